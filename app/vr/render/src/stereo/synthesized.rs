@@ -13,7 +13,7 @@ use super::over::{Over, OverlaySurfaces};
 use super::pipeline::Synthesis;
 use crate::view::{DrawRequest, GpuScene, Layout, NearestDepth, Renderer, Selection, Targets};
 use yoro::eyes::{Eye, EyePair, GuardBand, SynthesisViews};
-use yoro::opengl::{Gather, Options, Outputs, Source};
+use yoro::opengl::{Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
 
 /// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects and near frames.
@@ -33,6 +33,8 @@ struct Made {
     targets: Targets,
     over: Over,
     synthesizers: Synthesizers,
+    /// Makes more of the depth of one sample, where a driver gives no more.
+    guess: Option<GuessedDepth>,
 }
 
 /// Pipelines without and with depth of the synthesized eye, each made when first needed.
@@ -165,7 +167,7 @@ impl Synthesized {
             columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(pair, &views, frame.scene)),
         };
         let develops_first = self.develops_first();
-        let Some(Made { targets, over, synthesizers }) = &mut self.made else { return Ok(()) };
+        let Some(Made { targets, over, synthesizers, guess }) = &mut self.made else { return Ok(()) };
         renderer.draw_source(targets, frame.scene, &views.source, &request)?;
         let is_developed = develops_first && renderer.develops();
         if is_developed {
@@ -174,7 +176,10 @@ impl Synthesized {
         }
         let picture = targets.developed.as_ref().filter(|_| is_developed).unwrap_or(targets.color());
         let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
-        let source = Source::new(picture.color(0).raw(), depth.texture.raw());
+        let mut source = Source::new(picture.color(0).raw(), depth.texture.raw());
+        if let Some(guess) = guess {
+            source = guess.guess(source, &views.warp)?;
+        }
         // The other eye first: both are finished in the same samples.
         let (to, has_depth) = over.begin(frame, other, &surfaces)?;
         let synthesis = synthesizers.get(has_depth)?;
@@ -201,9 +206,11 @@ impl StereoMethod for Synthesized {
         let has_over = scene.has_transparent() || self.options.near_field.is_some();
         renderer.prepare_over(scene)?;
         let pairs = renderer.nearest_depth() == NearestDepth::Carried;
+        let is_first = renderer.nearest_depth() == NearestDepth::First;
         let made = match &mut self.made {
             Some(made) => made,
             slot => slot.insert(Made {
+                guess: is_first.then(|| GuessedDepth::new(&self.gl, &Options::default())).transpose()?,
                 targets: renderer.targets(Layout::Single)?,
                 over: Over::new(renderer)?,
                 synthesizers: Synthesizers {
