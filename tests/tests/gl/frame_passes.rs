@@ -24,9 +24,10 @@ type Seen = BTreeSet<(&'static str, String)>;
 #[test]
 fn passes_do_what_they_declare() {
     let mut seen = Seen::new();
-    let limits: [(fn(&mut Capabilities), NearestDepth); 2] = [
+    let limits: [(fn(&mut Capabilities), NearestDepth); 3] = [
         (|capabilities| capabilities.multisample_textures = false, NearestDepth::Carried),
         (|capabilities| capabilities.tile_samples = false, NearestDepth::Read),
+        (Capabilities::limit_to_es_300, NearestDepth::First),
     ];
     for (limit, way) in limits {
         let headless = Headless::open_limited(Backend::Egl, limit).unwrap();

@@ -76,6 +76,7 @@ pub const PASSES: &[Pass] = &[
     pass("outlines", &["color_map", "depth_map"], &[], COLOR),
     pass("repeat", &["copied"], &[], COLOR),
     pass("bloom", &["source"], COLOR, COLOR),
+    pass("guessed depth", &["color_map", "depth_map"], &[], DEPTH),
     pass("gather tiles", &["depth_map"], &[], COLOR),
     pass("gather spans", &["tile_map"], &[], COLOR),
     pass("gather march", &["color_map", "depth_map", "tile_map", "span_map", "bloom"], &[], BOTH),
