@@ -178,7 +178,8 @@ mod tests {
             (x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b)).wrapping_mul(0xc2b2_ae35) >> 30
         };
         let leaves = picture(256, |x, y| if leaf(x, y) == 0 { 255 } else { 0 });
-        for (level, share) in drawn(leaves, 256, 0.5).into_iter().enumerate().take(5) {
+        // The next level has 64 texels, too few to tell.
+        for (level, share) in drawn(leaves, 256, 0.5).into_iter().enumerate().take(4) {
             assert!((share - 0.25).abs() < 0.05, "level {level}: {share}");
         }
         // A ramp is cut where it is cut without minification.

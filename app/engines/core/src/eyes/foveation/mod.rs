@@ -294,7 +294,8 @@ fn cone_bounds(pose: &Pose, direction: Vec3, angle: f64) -> [[f64; 2]; 2] {
     let own = local(pose, direction);
     [own.x, own.y].map(|aside| {
         // The plane through the eye that touches the cone is turned by this from the direction's own plane.
-        let (middle, length) = (aside.atan2(-own.z), aside.hypot(own.z));
+        // Without `hypot`, of which new C libraries have a version that old ones lack.
+        let (middle, length) = (aside.atan2(-own.z), (aside * aside + own.z * own.z).sqrt());
         let turn = (angle.sin() / length).min(1.0).asin();
         [middle - turn, middle + turn].map(|angle| {
             let largest = f64::from(LARGEST_ANGLE);
