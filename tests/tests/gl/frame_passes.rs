@@ -19,12 +19,15 @@ use yoro_tests::{on_every_backend, scene};
 /// A part of a declaration that was seen: the pass, and what it read, loaded or stored.
 type Seen = BTreeSet<(&'static str, String)>;
 
+/// Takes away what a lesser driver lacks.
+type Limit = fn(&mut Capabilities);
+
 /// Records frames of every method in each style, with each way to get depth. No pass may read, load or store what it does
 /// not declare, and no declaration may be broader than what is done.
 #[test]
 fn passes_do_what_they_declare() {
     let mut seen = Seen::new();
-    let limits: [(fn(&mut Capabilities), NearestDepth); 3] = [
+    let limits: [(Limit, NearestDepth); 3] = [
         (|capabilities| capabilities.multisample_textures = false, NearestDepth::Carried),
         (|capabilities| capabilities.tile_samples = false, NearestDepth::Read),
         (Capabilities::limit_to_es_300, NearestDepth::First),
