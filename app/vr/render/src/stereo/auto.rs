@@ -160,7 +160,7 @@ impl StereoMethod for SelectedMethod {
 
     fn report(&self) -> MethodReport {
         if let Some(reason) = &self.unfit {
-            return MethodReport { guard_band: None, substituted: Some(Substituted::Eyes(reason.clone())) };
+            return MethodReport { guard_band: None, substituted: Some(Substituted::Eyes(*reason)) };
         }
         match &self.kind {
             Kind::Named(method) => method.report(),
