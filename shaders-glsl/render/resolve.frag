@@ -31,32 +31,32 @@ int at_sample;
 #include "include/ink.glsl"
 #endif
 
-// Colour of a sample. Ink takes some of the surface's colour.
-vec3 sample_color(ivec2 p, float depth) {
+// Colour of a sample. Ink takes some of the surface's colour; alpha is then luma. Otherwise alpha stays, since more is
+// drawn over the picture, and outlines later.
+vec4 sample_color(ivec2 p, float depth) {
     vec4 color = TEXEL(color_map, p);
 #ifdef INK
-    return color.rgb * (depth == far_depth ? 1.0 : 1.0 - 0.82 * ink(p, view_size - 1, depth, color.a));
-#else
-    return color.rgb;
+    color.rgb *= depth == far_depth ? 1.0 : 1.0 - 0.82 * ink(p, view_size - 1, depth, color.a);
+    color.a = luma(color.rgb);
 #endif
+    return color;
 }
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy) - view_origin;
 #if SAMPLES > 1
-    vec3 sum = vec3(0.0);
+    vec4 sum = vec4(0.0);
     float nearest = 0.0;
     for (at_sample = 0; at_sample < SAMPLES; ++at_sample) {
         float depth = nearer * TEXEL(depth_map, p).x;
         nearest = at_sample == 0 ? depth : min(nearest, depth);
         sum += sample_color(p, nearer * depth);
     }
-    vec3 c = sum / float(SAMPLES);
+    out_color = sum / float(SAMPLES);
 #else
     float nearest = nearer * TEXEL(depth_map, p).x;
-    vec3 c = sample_color(p, nearer * nearest);
+    out_color = sample_color(p, nearer * nearest);
 #endif
-    out_color = vec4(c, luma(c));
 #ifdef WRITE_DEPTH
     gl_FragDepth = nearer * nearest;
 #endif
