@@ -925,7 +925,7 @@ typedef struct {
   double inset_offset[2];
   /**
    * Of the synthesized eye: with the depth d, what the inset shows at the place x comes from the place
-   * inset_source[0] * x + inset_source[1] + inset_source[2] * d of the rendered image, whose borders are -1 and 1.
+   * a * x + b + c * d of the rendered image, whose borders are -1 and 1; these are a, b and c.
    * Zeros for the rendered eye.
    */
   double inset_source[3];
