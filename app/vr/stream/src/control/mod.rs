@@ -32,6 +32,8 @@ const ROUND_TRIP_WINDOW: f64 = 5.0;
 const SLACK: f64 = 0.01;
 const NOISE: f64 = 3.0;
 const MOST_SLACK: f64 = 0.12;
+/// For so many arrivals in a row, too much is on its way because of the rate: for fewer, because of one late frame.
+const LONG_FULL: u32 = 3;
 /// A frame that is due for this long in s when it is made was requested too late to be made at once.
 const LATE_REQUEST: f64 = 0.003;
 /// The longest time in s between two requests that make frames larger, and the weight of a new time in the mean.
@@ -87,6 +89,8 @@ pub struct RateControl {
     requested: f64,
     /// True if a frame was not made since the last arrival, because too much is on its way.
     is_full: bool,
+    /// For how many arrivals in a row that has been so.
+    full: u32,
     /// Since when the next frame has been due, in s.
     due_since: Option<f64>,
     /// The earliest time for the next frame in s, and the bytes that were sent beyond the rate at a time.
@@ -94,8 +98,9 @@ pub struct RateControl {
     debt: (f64, f64),
     /// Frames that the client has not decoded, and those before that may still be reported.
     frames: VecDeque<Sent>,
-    /// The fastest round trips of the present window and the previous one, and the present one's begin, in s.
-    fastest: [f64; 2],
+    /// The fastest round trips of the present window and the previous one, each with the time that a usual frame took at
+    /// the rate then, and the present one's begin, in s.
+    fastest: [[f64; 2]; 2],
     window_start: f64,
     round_trip: Option<Duration>,
     /// The bytes that an intra frame and another one would have at quantizer 0.
@@ -124,11 +129,12 @@ impl RateControl {
             rate: Rate::default(),
             requested: f64::from(1.0 / (RATE_HEADROOM * frame_rate)),
             is_full: false,
+            full: 0,
             due_since: None,
             next: 0.0,
             debt: (0.0, 0.0),
             frames: VecDeque::new(),
-            fastest: [f64::INFINITY; 2],
+            fastest: [[f64::INFINITY, 0.0]; 2],
             window_start: 0.0,
             round_trip: None,
             sizes: [None; 2],
@@ -283,6 +289,8 @@ impl RateControl {
             let longer = (more / arriving).clamp(-self.interval, self.interval);
             self.trend.add(time * 1e3, time_ms - longer * 1e3);
         }
+        // What has arrived is in no queue, whatever the rate was when it was sent.
+        self.debt = (self.debt_at(now).min(self.bytes_in_flight()), now);
         if !is_newest || is_given_up {
             return;
         }
@@ -291,13 +299,16 @@ impl RateControl {
         }
         self.round_trip = Some(Duration::from_secs_f64(round_trip.max(0.0)));
         if now - self.window_start >= ROUND_TRIP_WINDOW {
-            (self.fastest, self.window_start) = ([f64::INFINITY, self.fastest[0]], now);
+            (self.fastest, self.window_start) = ([[f64::INFINITY, 0.0], self.fastest[0]], now);
         }
-        self.fastest[0] = self.fastest[0].min(round_trip);
+        if round_trip < self.fastest[0][0] {
+            self.fastest[0] = [round_trip, self.expected(false) / self.rate.bytes_per_second()];
+        }
         let is_full = std::mem::take(&mut self.is_full);
+        self.full = if is_full { self.full + 1 } else { 0 };
         let queue = match self.trend.queue() {
             // It does not grow any more, but only because what is on its way fills it up.
-            Queue::Steady if is_full && self.trend.stands() => Queue::Grows,
+            Queue::Steady if self.full >= LONG_FULL && self.trend.stands() => Queue::Grows,
             // One may have begun.
             Queue::Steady if self.trend.is_late() => Queue::Shrinks,
             queue => queue,
@@ -352,8 +363,11 @@ impl RateControl {
         in_flight.map(|frame| frame.bytes).sum()
     }
 
+    /// Returns the fastest round trip in s. At a lower rate than then, a frame's own bytes take longer.
     fn fastest(&self) -> f64 {
-        self.fastest[0].min(self.fastest[1])
+        let [a, b] = self.fastest;
+        let [round_trip, own] = if a[0] <= b[0] { a } else { b };
+        round_trip + (self.expected(false) / self.rate.bytes_per_second() - own).max(0.0)
     }
 
     /// Returns the bytes that have been sent beyond the rate.

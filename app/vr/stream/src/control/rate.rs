@@ -20,6 +20,10 @@ const DECREASE: f64 = 0.9;
 /// The most that the rate exceeds what has arrived, as a factor: usually, and if what is on its way limits that.
 const HEADROOM: f64 = 1.5;
 const FULL_HEADROOM: f64 = 1.6;
+/// More than what arrives times this is a rate that is not used.
+const UNUSED: f64 = 1.3;
+/// A link has become much slower if less than this share of what is sent arrives, and late.
+const COLLAPSED: f64 = 0.35;
 /// The time in s over which what has arrived is counted.
 const WINDOW: f64 = 0.25;
 /// The weight of a new measurement in the mean capacity, and the least and the most relative variance of that.
@@ -90,6 +94,12 @@ impl Rate {
         (last[1] > first[1]).then(|| bytes / (last[1] - first[1]))
     }
 
+    /// Returns what arrives as a share of what was sent in the same frames.
+    fn arriving_share(&self) -> Option<f64> {
+        let (first, last) = (self.arrivals.front()?, self.arrivals.back()?);
+        (last[1] > first[1]).then(|| (last[0] - first[0]) / (last[1] - first[1]))
+    }
+
     /// Takes a frame's bytes and its round trip in s, if they are all that is known. Returns true if so.
     pub fn begin(&mut self, bytes: f64, round_trip: f64) -> bool {
         let is_lost = std::mem::take(&mut self.is_lost);
@@ -105,8 +115,7 @@ impl Rate {
         let passed = (now - self.changed).clamp(0.0, 0.2);
         self.changed = now;
         // The trend is seen after some frames, but so much slower a link after one.
-        let collapsed =
-            is_stalled && self.arriving().is_some_and(|arriving| arriving < 0.5 * self.bytes_per_second);
+        let collapsed = is_stalled && self.arriving_share().is_some_and(|share| share < COLLAPSED);
         match queue {
             _ if collapsed => self.decrease(round_trip, now),
             Queue::Shrinks => {}
@@ -134,7 +143,9 @@ impl Rate {
             // Another link, or another rival on it.
             _ => [arriving, high],
         });
-        self.bytes_per_second = self.bytes_per_second.min(DECREASE * arriving).max(LEAST);
+        // Less was sent than the rate, so what arrives may be all that was sent.
+        let share = if self.bytes_per_second > UNUSED * arriving { 1.0 } else { DECREASE };
+        self.bytes_per_second = self.bytes_per_second.min(share * arriving).max(LEAST);
     }
 
     fn increase(&mut self, passed: f64, is_full: bool, now: f64, round_trip: f64) {

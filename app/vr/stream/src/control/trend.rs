@@ -32,11 +32,12 @@ const LONGEST_STEP: f64 = 100.0;
 /// at most the last.
 const NEWEST: f64 = 1000.0;
 const WINDOW: f64 = 5000.0;
-
-const STANDING_NOISE: f64 = 2.5;
+const STANDING_NOISE: f64 = 2.0;
 const MOST_STANDING: f64 = 42.0;
+/// A queue may have begun if it delays this many frames.
+const LATE: usize = 3;
 /// The weight of a new frame in the noise (the interarrival jitter of RFC 3550).
-const NOISE_WEIGHT: f64 = 1.0 / 16.0;
+const NOISE_WEIGHT: f64 = 1.0 / 64.0;
 /// A queue must grow for this long in ms.
 const OVER_USE_TIME: f64 = 10.0;
 
@@ -114,9 +115,10 @@ impl Trend {
         self.standing() >= self.tolerated()
     }
 
-    /// True if the newest frame was delayed as if there were a queue.
+    /// True if the newest frames were delayed as if there were a queue.
     pub fn is_late(&self) -> bool {
-        self.newest() >= self.tolerated()
+        let newest = self.delays.iter().rev().take(LATE).map(|[_, delay]| *delay);
+        newest.fold(f64::INFINITY, f64::min) - self.least[0].min(self.least[1]) >= self.tolerated()
     }
 
     /// Returns by how much frames may be delayed without a queue, in ms.
