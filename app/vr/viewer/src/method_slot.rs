@@ -136,7 +136,12 @@ impl MethodSlot {
 
     /// Compiles the chosen method with the present options.
     fn create(&self, gl: &Rc<Context>, settings: &Settings) -> Result<SelectedMethod, GlError> {
-        SelectedMethod::new(gl, self.choice, &render_settings(settings), &self.options(settings))
+        SelectedMethod::new(
+            gl,
+            self.choice,
+            &render_settings(settings, Some(gl.capabilities())),
+            &self.options(settings),
+        )
     }
 
     /// Compiles the chosen method, if there is a context with a scene.

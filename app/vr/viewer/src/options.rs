@@ -1,13 +1,17 @@
 //! What the renderer and the stereo methods get from the viewer's settings.
 
+use yoro_gl::Capabilities;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions};
-use yoro_settings::Settings;
+use yoro_settings::{MSAA, Settings};
 
-/// Returns the renderer's settings for those of the viewer.
-pub fn render_settings(settings: &Settings) -> RenderSettings {
+/// Returns the renderer's settings for those of the viewer. If the driver is known and lacks the number of samples, it is
+/// the next smaller one that the driver has.
+pub fn render_settings(settings: &Settings, capabilities: Option<&Capabilities>) -> RenderSettings {
+    let has = |samples: &u32| capabilities.is_none_or(|driver| driver.check_samples(*samples).is_ok());
+    let msaa = MSAA.into_iter().rev().filter(|samples| *samples <= settings.msaa).find(has);
     RenderSettings {
-        msaa: settings.msaa,
+        msaa: msaa.unwrap_or(1),
         shadow_map_size: settings.shadow_map,
         bloom: settings.bloom,
         point_lights: settings.point_lights,

@@ -27,9 +27,11 @@ impl Viewer {
     pub(crate) fn change(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         // Everything that a mistake in the settings can make fail comes first.
         let source = self.other_scene(&settings, folders)?;
-        let (render, method_differs) = (render_settings(&settings), settings.method != self.settings.method);
+        let driver = self.attached.as_ref().map(|attached| attached.gl.capabilities());
+        let (render, method_differs) =
+            (render_settings(&settings, driver), settings.method != self.settings.method);
         if let Some(attached) = &self.attached
-            && (method_differs || render != render_settings(&self.settings))
+            && (method_differs || render != render_settings(&self.settings, driver))
         {
             let choice = if method_differs { settings.method } else { self.method() };
             render.supports(choice.first(), attached.gl.capabilities())?;
@@ -92,8 +94,9 @@ impl Viewer {
         if let Some(attached) = &self.attached {
             self.method.choose_pipeline(&attached.gl, settings);
         }
-        let render = render_settings(settings);
-        let renderer_differs = render != render_settings(before);
+        let driver = self.attached.as_ref().map(|attached| attached.gl.capabilities());
+        let render = render_settings(settings, driver);
+        let renderer_differs = render != render_settings(before, driver);
         if let Some(attached) = &self.attached
             && let Some(shown) = self.scene.shown()
             && renderer_differs

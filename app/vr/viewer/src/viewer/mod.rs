@@ -251,7 +251,7 @@ impl Viewer {
         self.method.drop_made();
         self.scene.drop_shown();
         self.scene.set_viewpoints(&scene.viewpoints);
-        let shown = Shown::new(gl, scene, &render_settings(&self.settings))?;
+        let shown = Shown::new(gl, scene, &render_settings(&self.settings, Some(gl.capabilities())))?;
         self.method.make_first(gl, &self.settings)?;
         log::info!("{}: {} triangles", shown.scene.name, shown.scene.triangle_count());
         self.scene.show(shown);
