@@ -235,8 +235,7 @@ fn guard_bands_and_estimates_are_measured_and_reported() {
 
     succeed(at, "report both.jsonl --out out");
     let results = fs::read_to_string(at.join("out/results.md")).unwrap();
-    let (guard_band, shader_cost) =
-        results.split_once("## Shader cost").expect("a section of each suite");
+    let (guard_band, shader_cost) = results.split_once("## Shader cost").expect("a section of each suite");
     assert!(guard_band.contains("## Guard band"), "{results}");
     for (section, rows) in [(guard_band, &bands[..]), (shader_cost, &devices)] {
         for row in rows {

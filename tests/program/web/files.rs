@@ -186,7 +186,7 @@ fn dropped_files_are_shown_or_refused() {
     }
 
     // Settings that do not apply to pictures cannot be changed.
-    let without = "['method', 'viewpoint', 'renderer'].every((id) => document.getElementById(id).disabled)";
+    let without = "['method', 'viewpoint', 'msaa'].every((id) => document.getElementById(id).disabled)";
     assert_eq!(page.evaluate(without), json!(true));
     for (value, part) in
         [("''", Some("Metres at white: ")), ("1e30", Some("Metres at white: ")), ("10", None)]

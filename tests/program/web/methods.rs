@@ -66,6 +66,8 @@ fn multiview_shows_what_two_renders_show() {
         return;
     }
     assert_eq!((page.message(), page.evaluate("yoro.settings.method")), (None, json!("multiview")));
+    // Layers have one sample in each pixel.
+    page.choose("msaa", "1");
     let both = page.eyes(SIZE);
     page.choose("method", "conventional");
     let expected = page.eyes(SIZE);
