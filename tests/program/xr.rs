@@ -562,7 +562,7 @@ fn desktop(scene: &str, method: Method, pair: &EyePair, settings: &Settings) -> 
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
     let scene = GpuScene::upload(gl, yoro_scenes::build(scene, yoro_scenes::DEFAULT_SEED).unwrap()).unwrap();
-    let (render, options) = (render_settings(settings), stereo_options(settings, settings.pipeline));
+    let (render, options) = (render_settings(settings, None), stereo_options(settings, settings.pipeline));
     let mut renderer = Renderer::new(gl, &render, &scene).unwrap();
     let mut method = stereo::create(gl, method, &render, &options).unwrap();
     method.prepare(&mut renderer, &scene).unwrap();

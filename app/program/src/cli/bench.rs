@@ -220,7 +220,7 @@ impl BenchArgs {
             eyes,
             // Phones render with the viewer's settings.
             render: if self.frame {
-                render_settings(self.renderer.settings())
+                render_settings(self.renderer.settings(), None)
             } else {
                 self.renderer.render_settings()
             },

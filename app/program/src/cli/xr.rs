@@ -203,7 +203,7 @@ impl Subcommand for XrArgs {
         let headless = self.gl.open()?;
         let gl = headless.gl();
         for method in &self.methods {
-            render_settings(&settings).supports(method.first(), gl.capabilities())?;
+            render_settings(&settings, None).supports(method.first(), gl.capabilities())?;
         }
         let mut viewer = Viewer::new(settings, &[])?;
         viewer.attach(gl.clone())?;
