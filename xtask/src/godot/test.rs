@@ -45,7 +45,7 @@ const SCENES: [Scene; 2] = [
             "fact warnings 0, transparent 2",
             "fact warnings 2\n",
             "fact served [true, true, false, false, false]",
-            "fact shaders of the kit that the add-on does not use: 3",
+            "fact shaders of the kit that the add-on does not use: 4",
             "fact without stereo layers the rendered eye is as before: true",
             "fact pixels of an eye in a stretched window: (128, 64)",
             "fact follows while paused true",
