@@ -62,9 +62,11 @@ vec4 depth_gather(vec2 place) {
         nearest_of(texelFetch(depth_map, TEXEL_PLACE(high), 0)),
         nearest_of(texelFetch(depth_map, TEXEL_PLACE(ivec2(high.x, low.y)), 0)),
         nearest_of(texelFetch(depth_map, TEXEL_PLACE(low), 0)));
-#elif defined(DEPTH_PAIRS)
-    return max(textureGather(depth_map, TEXTURE_PLACE(place), 0), textureGather(depth_map, TEXTURE_PLACE(place), 1));
 #else
-    return textureGather(depth_map, TEXTURE_PLACE(place));
+    vec4 quad = textureGather(depth_map, TEXTURE_PLACE(place));
+#ifdef DEPTH_PAIRS
+    quad = max(quad, textureGather(depth_map, TEXTURE_PLACE(place), 1));
+#endif
+    return quad;
 #endif
 }

@@ -36,7 +36,7 @@ const ivec2 TILE=ivec2(16,8);
 uniform sampler2D depth_map;
 float nearest_of(vec4 texel){return texel.r;}
 float depth_sample(vec2 place){return nearest_of(textureLod(depth_map,(place),0.0));}
-vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(nearest_of(texelFetch(depth_map,(ivec2(low.x,high.y)),0)),nearest_of(texelFetch(depth_map,(high),0)),nearest_of(texelFetch(depth_map,(ivec2(high.x,low.y)),0)),nearest_of(texelFetch(depth_map,(low),0)));return max(textureGather(depth_map,(place),0),textureGather(depth_map,(place),1));}
+vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(nearest_of(texelFetch(depth_map,(ivec2(low.x,high.y)),0)),nearest_of(texelFetch(depth_map,(high),0)),nearest_of(texelFetch(depth_map,(ivec2(high.x,low.y)),0)),nearest_of(texelFetch(depth_map,(low),0)));}
 float displacement(float depth){return law.x+law.y*depth;}
 vec2 place_of(vec2 at){at=PART?clamp(at,vec2(0.5),vec2(source_size)-0.5):at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
 const float TILE_UNITS=16.0;
@@ -94,7 +94,7 @@ uniform sampler2D color_map;
 float nearest_of(vec4 texel){return texel.r;}
 float depth_sample(vec2 place){return nearest_of(textureLod(depth_map,(place),0.0));}
 vec4 color_sample(vec2 place){return textureLod(color_map,(place),0.0);}
-vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(nearest_of(texelFetch(depth_map,(ivec2(low.x,high.y)),0)),nearest_of(texelFetch(depth_map,(high),0)),nearest_of(texelFetch(depth_map,(ivec2(high.x,low.y)),0)),nearest_of(texelFetch(depth_map,(low),0)));return max(textureGather(depth_map,(place),0),textureGather(depth_map,(place),1));}
+vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(nearest_of(texelFetch(depth_map,(ivec2(low.x,high.y)),0)),nearest_of(texelFetch(depth_map,(high),0)),nearest_of(texelFetch(depth_map,(ivec2(high.x,low.y)),0)),nearest_of(texelFetch(depth_map,(low),0)));}
 vec2 place_of(vec2 at){at=PART?clamp(at,vec2(0.5),vec2(source_size)-0.5):at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
 float column_at(float x){return place_of(vec2(x+0.5,0.5)).x;}
 float row_at(float away){return PART?place_of(vec2(0.5,gl_FragCoord.y-first_row+away)).y:rows.x*(gl_FragCoord.y+away)+rows.y;}

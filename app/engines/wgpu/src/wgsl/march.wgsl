@@ -223,9 +223,13 @@ fn fill_hole(color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_1: p
 }
 
 fn depth_gather(place_2: ptr<function, vec2<f32>>) -> vec4<f32> {
-    let _e3 = (*place_2);
-    let _e4 = textureGather(0, depth_map_texture, nearest_sampler, _e3);
-    return _e4;
+    var quad: vec4<f32>;
+
+    let _e4 = (*place_2);
+    let _e5 = textureGather(0, depth_map_texture, nearest_sampler, _e4);
+    quad = _e5;
+    let _e6 = quad;
+    return _e6;
 }
 
 fn depth_pair(x_2: ptr<function, f32>) -> vec2<f32> {
@@ -235,7 +239,7 @@ fn depth_pair(x_2: ptr<function, f32>) -> vec2<f32> {
     var param_14: vec2<f32>;
     var param_15: f32;
     var param_16: vec2<f32>;
-    var quad: vec4<f32>;
+    var quad_1: vec4<f32>;
     var param_17: f32;
     var param_18: vec2<f32>;
     var local_2: vec2<f32>;
@@ -265,13 +269,13 @@ fn depth_pair(x_2: ptr<function, f32>) -> vec2<f32> {
     let _e42 = row_at((&param_17));
     param_18 = vec2<f32>(((_e34 * (_e35 + 1.25f)) + _e40), _e42);
     let _e44 = depth_gather((&param_18));
-    quad = _e44;
+    quad_1 = _e44;
     let _e46 = synthesis.mirrored;
     if (_e46 != 0u) {
-        let _e48 = quad;
+        let _e48 = quad_1;
         local_2 = _e48.zw;
     } else {
-        let _e50 = quad;
+        let _e50 = quad_1;
         local_2 = _e50.wz;
     }
     let _e52 = local_2;
@@ -355,11 +359,11 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     var farther: bool;
     var local_7: f32;
     var local_8: f32;
-    var phi_586_: bool;
-    var phi_587_: bool;
     var phi_588_: bool;
-    var phi_635_: bool;
-    var phi_668_: bool;
+    var phi_589_: bool;
+    var phi_590_: bool;
+    var phi_637_: bool;
+    var phi_670_: bool;
 
     let _e19 = (*at_1).b;
     jump = (_e19 > 0f);
@@ -368,25 +372,25 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     torn = ((_e22 - _e24) >= 2f);
     let _e28 = (*beside).rim;
     let _e29 = (_e28 < 0f);
-    phi_588_ = _e29;
+    phi_590_ = _e29;
     if _e29 {
         let _e30 = jump;
         let _e31 = !(_e30);
-        phi_587_ = _e31;
+        phi_589_ = _e31;
         if !(_e31) {
             let _e33 = torn;
-            phi_586_ = _e33;
+            phi_588_ = _e33;
             if _e33 {
                 let _e35 = (*at_1).b;
-                phi_586_ = (_e35 < 1f);
+                phi_588_ = (_e35 < 1f);
             }
-            let _e38 = phi_586_;
-            phi_587_ = _e38;
+            let _e38 = phi_588_;
+            phi_589_ = _e38;
         }
-        let _e40 = phi_587_;
-        phi_588_ = _e40;
+        let _e40 = phi_589_;
+        phi_590_ = _e40;
     }
-    let _e42 = phi_588_;
+    let _e42 = phi_590_;
     rim = _e42;
     let _e43 = rim;
     if _e43 {
@@ -418,14 +422,14 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e64 = local_5;
     (*beside).rim_depth = _e64;
     let _e66 = jump;
-    phi_635_ = _e66;
+    phi_637_ = _e66;
     if _e66 {
         let _e69 = synthesis.law[1u];
         let _e72 = (*at_1).depths[0u];
         let _e74 = (*beside).edge_depth;
-        phi_635_ = ((_e69 * (_e72 - _e74)) < 0f);
+        phi_637_ = ((_e69 * (_e72 - _e74)) < 0f);
     }
-    let _e79 = phi_635_;
+    let _e79 = phi_637_;
     farther = _e79;
     let _e80 = farther;
     if _e80 {
@@ -448,36 +452,36 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e93 = local_8;
     (*beside).edge_depth = _e93;
     let _e95 = jump;
-    phi_668_ = _e95;
+    phi_670_ = _e95;
     if _e95 {
         let _e97 = (*at_1).a;
         let _e99 = torn;
-        phi_668_ = ((_e97 > -0.5f) || !(_e99));
+        phi_670_ = ((_e97 > -0.5f) || !(_e99));
     }
-    let _e103 = phi_668_;
+    let _e103 = phi_670_;
     return _e103;
 }
 
 fn is_event(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
-    var phi_499_: bool;
-    var phi_500_: bool;
+    var phi_501_: bool;
+    var phi_502_: bool;
 
     let _e4 = (*a);
     let _e5 = (_e4 <= 0f);
-    phi_500_ = _e5;
+    phi_502_ = _e5;
     if _e5 {
         let _e6 = (*b);
         let _e7 = (_e6 > 0f);
-        phi_499_ = _e7;
+        phi_501_ = _e7;
         if !(_e7) {
             let _e9 = (*b);
             let _e11 = (*a);
-            phi_499_ = (max(_e9, -1f) < _e11);
+            phi_501_ = (max(_e9, -1f) < _e11);
         }
-        let _e14 = phi_499_;
-        phi_500_ = _e14;
+        let _e14 = phi_501_;
+        phi_502_ = _e14;
     }
-    let _e16 = phi_500_;
+    let _e16 = phi_502_;
     return _e16;
 }
 
@@ -536,17 +540,17 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     var param_44: f32;
     var param_45: f32;
     var param_46: vec2<f32>;
-    var phi_717_: bool;
-    var phi_724_: bool;
-    var phi_734_: bool;
-    var phi_804_: bool;
-    var phi_815_: bool;
-    var phi_825_: bool;
-    var phi_899_: bool;
-    var phi_949_: bool;
-    var phi_972_: bool;
-    var phi_1023_: bool;
-    var phi_1039_: bool;
+    var phi_719_: bool;
+    var phi_726_: bool;
+    var phi_736_: bool;
+    var phi_806_: bool;
+    var phi_817_: bool;
+    var phi_827_: bool;
+    var phi_901_: bool;
+    var phi_951_: bool;
+    var phi_974_: bool;
+    var phi_1025_: bool;
+    var phi_1041_: bool;
 
     let _e77 = (*at_2).a;
     let _e79 = (*at_2).x;
@@ -573,29 +577,29 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     beside_1.rim = -1f;
     beside_1.rim_depth = 0f;
     found = false;
-    phi_717_ = true;
+    phi_719_ = true;
     if true {
         let _e110 = (*at_2).x;
-        phi_717_ = (_e110 >= 0f);
+        phi_719_ = (_e110 >= 0f);
     }
-    let _e113 = phi_717_;
-    phi_724_ = _e113;
+    let _e113 = phi_719_;
+    phi_726_ = _e113;
     if _e113 {
         let _e115 = (*at_2).x;
         let _e116 = (*end);
-        phi_724_ = (_e115 < _e116);
+        phi_726_ = (_e115 < _e116);
     }
-    let _e119 = phi_724_;
-    phi_734_ = _e119;
+    let _e119 = phi_726_;
+    phi_736_ = _e119;
     if _e119 {
         let _e121 = (*at_2).a;
         param_21 = _e121;
         let _e123 = (*at_2).b;
         param_22 = _e123;
         let _e124 = is_event((&param_21), (&param_22));
-        phi_734_ = _e124;
+        phi_736_ = _e124;
     }
-    let _e126 = phi_734_;
+    let _e126 = phi_736_;
     if _e126 {
         let _e127 = beside_1;
         param_23 = _e127;
@@ -641,34 +645,34 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
             (*at_2) = _e167;
             let _e168 = a_1;
             let _e169 = (_e168 <= 0f);
-            phi_804_ = _e169;
+            phi_806_ = _e169;
             if _e169 {
                 let _e171 = (*at_2).a;
-                phi_804_ = (_e171 > 0f);
+                phi_806_ = (_e171 > 0f);
             }
-            let _e174 = phi_804_;
+            let _e174 = phi_806_;
             crosses = _e174;
             let _e175 = crosses;
             found = _e175;
             let _e176 = crosses;
             let _e178 = (true && !(_e176));
-            phi_815_ = _e178;
+            phi_817_ = _e178;
             if _e178 {
                 let _e180 = (*at_2).x;
                 let _e181 = (*end);
-                phi_815_ = (_e180 < _e181);
+                phi_817_ = (_e180 < _e181);
             }
-            let _e184 = phi_815_;
-            phi_825_ = _e184;
+            let _e184 = phi_817_;
+            phi_827_ = _e184;
             if _e184 {
                 let _e186 = (*at_2).a;
                 param_31 = _e186;
                 let _e188 = (*at_2).b;
                 param_32 = _e188;
                 let _e189 = is_event((&param_31), (&param_32));
-                phi_825_ = _e189;
+                phi_827_ = _e189;
             }
-            let _e191 = phi_825_;
+            let _e191 = phi_827_;
             if _e191 {
                 let _e192 = beside_1;
                 param_33 = _e192;
@@ -728,12 +732,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
             (*at_2) = _e234;
             let _e236 = (*at_2).a;
             let _e237 = (_e236 > 0f);
-            phi_899_ = _e237;
+            phi_901_ = _e237;
             if !(_e237) {
                 let _e240 = (*at_2).b;
-                phi_899_ = (_e240 <= 0f);
+                phi_901_ = (_e240 <= 0f);
             }
-            let _e243 = phi_899_;
+            let _e243 = phi_901_;
             crosses = _e243;
             let _e245 = (*at_2).a;
             behind = (_e245 > 0f);
@@ -783,12 +787,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
         }
     }
     let _e268 = found;
-    phi_949_ = _e268;
+    phi_951_ = _e268;
     if !(_e268) {
         let _e271 = beside_1.edge;
-        phi_949_ = (_e271 < 0f);
+        phi_951_ = (_e271 < 0f);
     }
-    let _e274 = phi_949_;
+    let _e274 = phi_951_;
     own = _e274;
     let _e275 = own;
     if _e275 {
@@ -802,13 +806,13 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     let _e282 = local_16;
     x_5 = _e282;
     let _e283 = found;
-    phi_972_ = _e283;
+    phi_974_ = _e283;
     if _e283 {
         let _e285 = (*at_2).b;
         let _e287 = (*at_2).a;
-        phi_972_ = ((_e285 - _e287) < 2f);
+        phi_974_ = ((_e285 - _e287) < 2f);
     }
-    let _e291 = phi_972_;
+    let _e291 = phi_974_;
     if _e291 {
         let _e293 = (*at_2).a;
         let _e296 = (*at_2).b;
@@ -841,12 +845,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     away_3 = ((_e319 - _e320) + (_e324 * _e326));
     let _e329 = found;
     let _e330 = !(_e329);
-    phi_1023_ = _e330;
+    phi_1025_ = _e330;
     if _e330 {
         let _e331 = away_3;
-        phi_1023_ = (abs(_e331) >= 0.5f);
+        phi_1025_ = (abs(_e331) >= 0.5f);
     }
-    let _e335 = phi_1023_;
+    let _e335 = phi_1025_;
     (*surface).hole = _e335;
     let _e338 = (*surface).source;
     param_37 = _e338;
@@ -856,12 +860,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     param_39 = vec2<f32>(_e339, _e340);
     let _e342 = color_sample((&param_39));
     color_1 = _e342;
-    phi_1039_ = true;
+    phi_1041_ = true;
     if true {
         let _e344 = (*surface).hole;
-        phi_1039_ = _e344;
+        phi_1041_ = _e344;
     }
-    let _e346 = phi_1039_;
+    let _e346 = phi_1041_;
     if _e346 {
         let _e347 = color_1;
         param_40 = _e347;
@@ -951,10 +955,10 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     var param_58: f32;
     var param_59: i32;
     var param_60: Surface;
-    var phi_1190_: bool;
-    var phi_1199_: bool;
-    var phi_1282_: bool;
-    var phi_1295_: bool;
+    var phi_1192_: bool;
+    var phi_1201_: bool;
+    var phi_1284_: bool;
+    var phi_1297_: bool;
 
     let _e40 = synthesis.origins[0u];
     let _e42 = gl_FragCoord_1[0u];
@@ -981,19 +985,19 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
         let _e76 = at_3.x;
         let _e77 = limit;
         let _e78 = (_e76 < _e77);
-        phi_1190_ = _e78;
+        phi_1192_ = _e78;
         if _e78 {
             let _e80 = at_3.b;
-            phi_1190_ = (_e80 <= 0f);
+            phi_1192_ = (_e80 <= 0f);
         }
-        let _e83 = phi_1190_;
-        phi_1199_ = _e83;
+        let _e83 = phi_1192_;
+        phi_1201_ = _e83;
         if _e83 {
             let _e85 = at_3.b;
             let _e88 = at_3.a;
-            phi_1199_ = (max(_e85, -1f) >= _e88);
+            phi_1201_ = (max(_e85, -1f) >= _e88);
         }
-        let _e91 = phi_1199_;
+        let _e91 = phi_1201_;
         if _e91 {
             let _e93 = at_3.x;
             param_50 = (_e93 + 2f);
@@ -1046,22 +1050,22 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     middle = (0.5f * f32((_e155 - 1i)));
     let _e160 = at_3.a;
     let _e161 = (_e160 <= 0f);
-    phi_1282_ = _e161;
+    phi_1284_ = _e161;
     if _e161 {
         let _e163 = at_3.b;
-        phi_1282_ = (_e163 > 0f);
+        phi_1284_ = (_e163 > 0f);
     }
-    let _e166 = phi_1282_;
+    let _e166 = phi_1284_;
     let _e167 = stretch;
     let _e169 = (_e166 && (_e167 < 2f));
-    phi_1295_ = _e169;
+    phi_1297_ = _e169;
     if _e169 {
         let _e171 = (*surface_1).source;
         let _e172 = middle;
         let _e175 = middle;
-        phi_1295_ = (abs((_e171 - _e172)) <= _e175);
+        phi_1297_ = (abs((_e171 - _e172)) <= _e175);
     }
-    let _e178 = phi_1295_;
+    let _e178 = phi_1297_;
     done = _e178;
     let _e179 = done;
     if (true && !(_e179)) {
@@ -1126,16 +1130,16 @@ fn main_1() {
     var param_64: Surface;
     var param_65: u32;
     var param_66: Surface;
-    var phi_1322_: bool;
+    var phi_1324_: bool;
 
     let _e10 = pixel_span();
     span_2 = _e10;
-    phi_1322_ = true;
+    phi_1324_ = true;
     if true {
         let _e12 = span_2[1u];
-        phi_1322_ = (_e12 != 0u);
+        phi_1324_ = (_e12 != 0u);
     }
-    let _e15 = phi_1322_;
+    let _e15 = phi_1324_;
     if _e15 {
         let _e16 = span_2;
         param_63 = bitcast<vec3<f32>>(_e16.xyz);

@@ -74,9 +74,13 @@ fn displacement(depth: ptr<function, f32>) -> f32 {
 }
 
 fn depth_gather(place: ptr<function, vec2<f32>>) -> vec4<f32> {
-    let _e3 = (*place);
-    let _e4 = textureGather(0, depth_map_texture, nearest_sampler, _e3);
-    return _e4;
+    var quad: vec4<f32>;
+
+    let _e4 = (*place);
+    let _e5 = textureGather(0, depth_map_texture, nearest_sampler, _e4);
+    quad = _e5;
+    let _e6 = quad;
+    return _e6;
 }
 
 fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
@@ -85,13 +89,13 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
     var local_1: vec2<f32>;
     var row: f32;
     var local_2: f32;
-    var quad: vec4<f32>;
+    var quad_1: vec4<f32>;
     var param_1: vec2<f32>;
     var local_3: vec4<f32>;
     var local_4: vec4<f32>;
     var local_5: vec4<f32>;
-    var phi_212_: bool;
-    var phi_244_: bool;
+    var phi_214_: bool;
+    var phi_246_: bool;
 
     let _e20 = synthesis.source_size;
     last = vec2<f32>((_e20 - vec2(2i)));
@@ -125,54 +129,54 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
     let _e61 = row;
     param_1 = vec2<f32>(((_e52 * (_e54 + 1f)) + _e59), _e61);
     let _e63 = depth_gather((&param_1));
-    quad = _e63;
+    quad_1 = _e63;
     if true {
         let _e65 = (*corner)[0u];
         let _e67 = last[0u];
         let _e68 = (_e65 <= _e67);
-        phi_212_ = _e68;
+        phi_214_ = _e68;
         if !(_e68) {
             let _e72 = synthesis.source_size[0u];
-            phi_212_ = (_e72 == 1i);
+            phi_214_ = (_e72 == 1i);
         }
-        let _e75 = phi_212_;
+        let _e75 = phi_214_;
         if _e75 {
-            let _e76 = quad;
+            let _e76 = quad_1;
             local_3 = _e76;
         } else {
             let _e78 = synthesis.mirrored;
             if (_e78 != 0u) {
-                let _e80 = quad;
+                let _e80 = quad_1;
                 local_4 = _e80.xxww;
             } else {
-                let _e82 = quad;
+                let _e82 = quad_1;
                 local_4 = _e82.yyzz;
             }
             let _e84 = local_4;
             local_3 = _e84;
         }
         let _e85 = local_3;
-        quad = _e85;
+        quad_1 = _e85;
         let _e87 = (*corner)[1u];
         let _e89 = last[1u];
         let _e90 = (_e87 <= _e89);
-        phi_244_ = _e90;
+        phi_246_ = _e90;
         if !(_e90) {
             let _e94 = synthesis.source_size[1u];
-            phi_244_ = (_e94 == 1i);
+            phi_246_ = (_e94 == 1i);
         }
-        let _e97 = phi_244_;
+        let _e97 = phi_246_;
         if _e97 {
-            let _e98 = quad;
+            let _e98 = quad_1;
             local_5 = _e98;
         } else {
-            let _e99 = quad;
+            let _e99 = quad_1;
             local_5 = _e99.xyyx;
         }
         let _e101 = local_5;
-        quad = _e101;
+        quad_1 = _e101;
     }
-    let _e102 = quad;
+    let _e102 = quad_1;
     return _e102;
 }
 
@@ -240,7 +244,7 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var before: vec2<f32>;
     var i: i32;
     var column: f32;
-    var quad_1: vec4<f32>;
+    var quad_2: vec4<f32>;
     var param_11: vec2<f32>;
     var depths: vec4<f32>;
     var between: vec2<f32>;
@@ -262,7 +266,7 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var param_16: u32;
     var param_17: f32;
     var param_18: f32;
-    var phi_629_: bool;
+    var phi_631_: bool;
 
     let _e79 = (*corner_1);
     middle = (_e79 + vec2(0.5f));
@@ -337,8 +341,8 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
                     let _e161 = row_1;
                     param_11 = vec2<f32>((_e158 + _e159), _e161);
                     let _e163 = depth_quad((&param_11));
-                    quad_1 = _e163;
-                    let _e164 = quad_1;
+                    quad_2 = _e163;
+                    let _e164 = quad_2;
                     let _e165 = plane;
                     let _e167 = slope[0u];
                     let _e168 = column;
@@ -349,13 +353,13 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
                     let _e176 = high_1;
                     let _e177 = depths;
                     high_1 = max(_e176, _e177);
-                    let _e179 = quad_1;
+                    let _e179 = quad_2;
                     let _e181 = before;
                     between = abs((_e179.xw - _e181));
-                    let _e184 = quad_1;
-                    let _e186 = quad_1;
+                    let _e184 = quad_2;
+                    let _e186 = quad_2;
                     within = abs((_e184.yz - _e186.xw));
-                    let _e190 = quad_1;
+                    let _e190 = quad_2;
                     before = _e190.yz;
                     let _e192 = i;
                     let _e194 = i;
@@ -444,12 +448,12 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     let _e315 = most;
     let _e316 = least;
     let _e319 = ((abs(_e313) * (_e315 - _e316)) <= 0.125f);
-    phi_629_ = _e319;
+    phi_631_ = _e319;
     if _e319 {
         let _e321 = plane_law[1u];
-        phi_629_ = (abs((_e321 - 0.25f)) < 0.75f);
+        phi_631_ = (abs((_e321 - 0.25f)) < 0.75f);
     }
-    let _e326 = phi_629_;
+    let _e326 = phi_631_;
     planar = _e326;
     let _e327 = planar;
     if _e327 {
