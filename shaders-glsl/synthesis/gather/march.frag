@@ -10,9 +10,6 @@
 #include "include/segments.glsl"
 #ifdef BLOOM
 #include "include/develop.glsl"
-#define DEVELOPED(color, place) developed(color, place)
-#else
-#define DEVELOPED(color, place) color
 #endif
 
 layout(location = 0) out vec4 color;
@@ -41,7 +38,11 @@ vec4 lawful(vec3 affine, out Surface surface) {
     surface.hole = false;
 #endif
     vec2 at = vec2(place, row_at(0.0));
-    return DEVELOPED(color_sample(at), at);
+#ifdef BLOOM
+    return developed(color_sample(at), at);
+#else
+    return color_sample(at);
+#endif
 }
 
 // Colour and surface of any other pixel.
@@ -68,7 +69,10 @@ vec4 searched(uint span, out Surface surface) {
         COUNT_TRIP(6)
         seen = march(at, end, origin, source_row(), surface);
     }
-    return DEVELOPED(seen, vec2(column_at(surface.source), row_at(0.0)));
+#ifdef BLOOM
+    seen = developed(seen, vec2(column_at(surface.source), row_at(0.0)));
+#endif
+    return seen;
 }
 
 void main() {
