@@ -117,10 +117,10 @@ fn a_session_runs_from_loading_to_its_summary() {
 }
 
 #[test]
-fn a_render_rate_below_the_displays_renders_every_other_frame() {
+fn half_the_rate_renders_every_other_frame() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let mut run = Run::new(gl, &["scene=talk", "hud=false", "method=auto", "render-rate=30"]);
+    let mut run = Run::new(gl, &["scene=talk", "hud=false", "method=auto", "frame-rate=half"]);
     run.load();
     let still = HeldHead { rendered: Quat::IDENTITY, displayed: Quat::IDENTITY };
     run.viewer.hold_head(Some(still));
