@@ -250,6 +250,10 @@ fn the_package_is_used_as_its_first_page_says() {
     assert_eq!(synthesized.len(), commands.matches(" && ./").count(), "{printed}");
     assert!(synthesized.iter().all(|&psnr| psnr > 30.0), "{printed}");
     assert!(work.path().join("build/gles").is_file(), "{printed}");
+    let notices = std::fs::read_to_string(work.path().join("share/doc/yoro/NOTICES.txt")).unwrap();
+    for name in ["\n  ash ", "\n  glam ", "\n  glow "] {
+        assert!(notices.contains(name), "{name}: {notices}");
+    }
     let size = work.path().join("lib/libyoro.so").metadata().unwrap().len();
     assert!(size < 1_050_000, "{size} bytes");
 }
