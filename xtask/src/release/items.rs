@@ -66,6 +66,13 @@ const NO_DEVICE: &str = "a device";
 /// The descriptions, the first that fits counts.
 pub const DESCRIPTIONS: [Description; 14] = [
     Description {
+        parts: ["yoro-", ".cdx.json"],
+        title: "what is in a file, in CycloneDX 1.5",
+        tested: "",
+        untested: "",
+        same: Same::Anywhere,
+    },
+    Description {
         parts: ["yoro-openxr-layer", "linux"],
         title: "OpenXR applications that render one view",
         tested: "x86_64: hello_xr on Monado; arm64: it is linked",
@@ -147,13 +154,6 @@ pub const DESCRIPTIONS: [Description; 14] = [
         title: "three.js",
         tested: "installed and bundled, pictures against three's own eyes",
         untested: "headsets",
-        same: Same::Anywhere,
-    },
-    Description {
-        parts: ["yoro-", ".cdx.json"],
-        title: "what is in a file, in CycloneDX 1.5",
-        tested: "",
-        untested: "",
         same: Same::Anywhere,
     },
     Description {
@@ -282,7 +282,7 @@ mod tests {
             ("yoro-0.1.0.aar", "the C library"),
             ("yoro-gl-0.1.0.crate", "Rust"),
             ("bevy_yoro-0.1.0.crate", "Rust"),
-            ("yoro-0.1.0-linux-x86_64.cdx.json", "what is in"),
+            ("yoro-0.1.0.apk.cdx.json", "what is in"),
         ] {
             let description = Description::of(name).unwrap();
             assert!(description.title.starts_with(title), "{name}: {}", description.title);

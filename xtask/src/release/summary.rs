@@ -20,9 +20,10 @@ pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
     let mut text = format!(
         "# yoro {VERSION}\n\
          \n\
-         Built from {commit}. `sha256sum --check {SUMS}` checks the files. Each archive has `{}` of the code of others in it.\n\
+         Built from {commit}. `sha256sum --check {SUMS}` checks the files. What contains code of others has its `{}`\n\
+         inside.\n\
          \n\
-         **No phone and no headset has run any of it.** Where a device is missing, the last column says what took its place.\n\
+         **No phone and no headset has run any of it.** *Tested by* says what took a device's place.\n\
          \n\
          | file | bytes | for | tested by | not tested on | same bytes again |\n\
          |---|---|---|---|---|---|\n",
