@@ -210,12 +210,12 @@ fn options_without_effect_are_refused() {
         ("render prototype --kernel-height 5", ["--kernel-height has no effect", "pipeline gather"]),
         ("run prototype --pipeline paper", ["--pipeline has no effect", "--pipelines"]),
         (
-            "view --png v.png --set render-rate=36 --set near-field=2",
-            ["near-field has no effect", "render-rate"],
+            "view --png v.png --set frame-rate=half --set near-field=2",
+            ["near-field has no effect", "frame-rate=half"],
         ),
         (
-            "view --png v.png --set render-rate=36 --set pipeline=paper",
-            ["pipeline=paper has no effect", "render-rate"],
+            "view --png v.png --set frame-rate=half --set pipeline=paper",
+            ["pipeline=paper has no effect", "frame-rate=half"],
         ),
     ] {
         run(dir.path(), line).refuses(&naming);

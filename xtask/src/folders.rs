@@ -77,6 +77,19 @@ pub fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Copies a folder and the folders in it.
+///
+/// # Errors
+/// Fails if something in it cannot be copied.
+pub fn copy_folder(from: &Path, to: &Path) -> anyhow::Result<()> {
+    for entry in fs::read_dir(from).with_context(|| format!("{} cannot be read", from.display()))? {
+        let path = entry?.path();
+        let copied = to.join(path.file_name().unwrap_or_default());
+        if path.is_dir() { copy_folder(&path, &copied)? } else { copy(&path, &copied)? }
+    }
+    Ok(())
+}
+
 /// Makes the parent folders of a file.
 ///
 /// # Errors

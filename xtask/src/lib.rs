@@ -8,7 +8,7 @@ mod android;
 mod apt;
 mod arm64;
 mod bevy;
-mod cargo;
+pub mod cargo;
 pub mod console;
 pub mod folders;
 mod godot;
@@ -16,12 +16,18 @@ mod kit;
 mod lint;
 pub mod maintain;
 pub mod ndk;
+mod notices;
 mod package;
 mod packages;
+mod publish;
+pub mod release;
 mod rust;
 mod setup;
+mod site;
 mod testing;
 mod web;
+#[cfg(test)]
+mod workflows;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -83,6 +89,9 @@ enum Task {
         /// Make an application bundle (.aab) for a store, too
         #[arg(long)]
         bundle: bool,
+        /// Pack an APK for Meta's store, too
+        #[arg(long)]
+        quest: bool,
     },
     /// Print what builds the Android application, what is missing, and how to get it
     Doctor,
@@ -90,13 +99,31 @@ enum Task {
     CheckApk {
         /// The APK or the bundle
         file: PathBuf,
+        /// Check that this store takes it, too
+        #[arg(long, value_name = "NAME")]
+        store: Option<android::check::Store>,
     },
     /// Pack the C library into target/package: with pkg-config and CMake files for Linux, as an AAR for
-    /// Android; the OpenXR layer for Android; the add-on for Godot; the package for three.js
+    /// Android; the OpenXR layer for both; the add-on for Godot; the package for three.js
     Package {
         /// Make only these packages [default: all]
         #[arg(long = "target", value_name = "NAME", value_delimiter = ',')]
         targets: Vec<package::Target>,
+    },
+    /// Build everything that is published, with checksums, bills of materials and RELEASE.md
+    Release {
+        /// Where to put the files
+        #[arg(long, value_name = "DIR", default_value = "dist")]
+        out: PathBuf,
+        /// Make only these [default: all]
+        #[arg(long, value_name = "NAME", value_delimiter = ',')]
+        only: Vec<release::Item>,
+    },
+    /// Build the site into target/site: the page, the guides, rustdoc, downloads. All its links are checked
+    Site {
+        /// Offer the files of a release in this folder
+        #[arg(long, value_name = "DIR")]
+        release: Option<PathBuf>,
     },
     /// Write the shader kit into target/kit: synthesis for engines that want no library
     Kit,
@@ -133,8 +160,8 @@ enum Task {
         #[command(subcommand)]
         task: maintain::Task,
     },
-    /// Check formatting, clippy, documentation, each published library without its default features, their packages, and
-    /// the types of the page's scripts
+    /// Check formatting, clippy, documentation, each published library without its default features, their packages, the
+    /// licences of dependencies, and the types of the page's scripts
     Lint,
 }
 
@@ -163,19 +190,23 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Test { filters, packages, bless, jobs } => {
             testing::test(&testing::Options { filters, packages, bless, jobs })?;
         }
-        Task::Apk { release, yes, openxr_loaders, bundle } => {
-            android::apk(&android::Options { release, yes, openxr_loaders, bundle })?;
+        Task::Apk { release, yes, openxr_loaders, bundle, quest } => {
+            android::apk(&android::Options { release, yes, openxr_loaders, bundle, quest })?;
         }
         Task::Doctor => {
             let (text, complete) = android::doctor()?;
             console::print(&text);
             return Ok(complete);
         }
-        Task::CheckApk { file } => {
-            return android::check::check(&file);
+        Task::CheckApk { file, store } => {
+            return android::check::check(&file, store);
         }
         Task::Package { targets } => {
             package::package(&targets)?;
+        }
+        Task::Release { out, only } => release::release(&out, &only)?,
+        Task::Site { release } => {
+            site::build(release.as_deref())?;
         }
         Task::Kit => {
             kit::kit()?;

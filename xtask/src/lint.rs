@@ -2,11 +2,10 @@
 
 use anyhow::bail;
 
-use crate::cargo;
-use crate::web;
+use crate::{cargo, notices, web};
 
 /// The packages that could be published to a registry: the library's core and its dependencies.
-const PUBLISHED: [&str; 4] = ["yoro-shaders", "yoro-gl", "yoro", "yoro-wgpu"];
+pub const PUBLISHED: [&str; 4] = ["yoro-shaders", "yoro-gl", "yoro", "yoro-wgpu"];
 
 /// Runs all checks, even after one has failed.
 ///
@@ -47,6 +46,9 @@ pub fn lint() -> anyhow::Result<()> {
         .collect();
     if !web::check_types()? {
         failed.push("the type checker (app/vr/web/tsconfig.json)".into());
+    }
+    if !notices::are_accepted()? {
+        failed.push("the list of licences (xtask/helpers/publish/src/licences.rs)".into());
     }
     if !failed.is_empty() {
         bail!("{} found something: see above", failed.join(", "));

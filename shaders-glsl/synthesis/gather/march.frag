@@ -27,7 +27,7 @@ const float FIRST_STEPS = 2.0;
 // Colour and surface of a pixel whose tile has a law.
 vec4 lawful(vec3 affine, out Surface surface) {
     float place = affine.x + affine.y * gl_FragCoord.x + affine.z * gl_FragCoord.y;
-#if defined(WRITE_DEPTH) || defined(SOURCE_MAP)
+#if defined(WRITE_DEPTH) || defined(SOURCE_MAP) || defined(MOTION)
     surface.source = clamp((place - columns.y) / columns.x - 0.5, 0.0, float(source_size.x - 1));
     // The surface's own displacement tells its depth, so that none is read, unless nothing is displaced.
     surface.depth = (origins.x * gl_FragCoord.x + origins.y - surface.source) / law.y;
@@ -86,6 +86,13 @@ void main() {
     } else {
         discard;
     }
+#ifdef MOTION
+    // Silhouettes are not blended: a mean of two motions is nobody's. A hole has the vector of the background that fills it.
+    vec4 vector = color_sample(vec2(column_at(surface.source), row_at(0.0)));
+    vec2 scale = mix(vec2(1.0), vec2(source_size) / vec2(target_size), motion.w);
+    color = vec4(scale * vector.xy, vector.zw);
+    color.x += motion.x * vector.z + motion.y * surface.depth + motion.z;
+#endif
 #ifdef COUNT_TRIPS
     int ways = trips[0] | min(trips[2], 1) << 3 | trips[6] << 4 | trips[7] << 5;
     color = vec4(ways, trips[1], trips[3], trips[4]) / 255.0;

@@ -97,6 +97,7 @@ fn table() -> &'static HashMap<(System, &'static str), Export> {
         [
             crate::bionic::exports(),
             crate::android::activity::exports(),
+            crate::android::assets::exports(),
             crate::android::camera::exports(),
             crate::android::choreographer::exports(),
             crate::android::configuration::exports(),

@@ -54,6 +54,8 @@ pub struct Host {
     pub jni: Jni,
     /// The application's folders.
     pub directories: Directories,
+    /// The files in the APK's folder `assets`, by path.
+    pub assets: BTreeMap<String, Vec<u8>>,
     /// The application's library.
     pub library: OnceLock<Library>,
     /// The library of an API layer, if the application contains one.
@@ -121,7 +123,12 @@ impl Host {
     ///
     /// # Errors
     /// Fails if EGL or the folders cannot be set up.
-    pub fn install(script: &Script, verbose: bool, report: Report) -> anyhow::Result<&'static Self> {
+    pub fn install(
+        script: &Script,
+        assets: BTreeMap<String, Vec<u8>>,
+        verbose: bool,
+        report: Report,
+    ) -> anyhow::Result<&'static Self> {
         let device = script.device.clone();
         let host = Self {
             battery: Mutex::new(device.battery.clone()),
@@ -138,6 +145,7 @@ impl Host {
             graphics: Graphics::new(device.gles)?,
             jni: Jni::new(),
             directories: Directories::new(&device.files)?,
+            assets,
             library: OnceLock::new(),
             layer: OnceLock::new(),
             finish_asked: AtomicBool::new(false),

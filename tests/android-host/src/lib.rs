@@ -71,7 +71,7 @@ pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Resul
         // SAFETY: the process has a single thread.
         unsafe { openxr::install(headset) }?;
     }
-    let host = Host::install(script, verbose, report)?;
+    let host = Host::install(script, apk.assets, verbose, report)?;
     let sdk = host.device.sdk;
     let load = |(name, bytes): &(String, Vec<u8>)| -> Result<Library> {
         let loaded = Library::load(name, bytes, |library, symbol| exports::find(library, symbol, sdk))?;

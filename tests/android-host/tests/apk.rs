@@ -19,7 +19,7 @@ use yoro_android_host::summary::Summary;
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{At, Event, Eye, Fault, Pictures, Script as Headset, What};
 
-use host::{READY, Run, device, layer, play, play_arm64, show};
+use host::{READY, Run, asset, device, layer, play, play_arm64, show};
 
 /// The settings of all devices, and of the desktop for comparison. A CPU renders this scene and quality quickly.
 const SETTINGS: [(&str, &str); 8] = [
@@ -728,15 +728,23 @@ fn save_code(text: &str, path: &Path) {
     .unwrap();
 }
 
+#[test]
+fn it_carries_the_notices_of_others() {
+    let Some(notices) = asset("notices", "NOTICES.txt") else { return };
+    for name in ["\n  ndk ", "\nandroid-properties ", "\nThe font B612 Mono"] {
+        assert!(notices.contains(name), "{name}: {notices}");
+    }
+}
+
 /// Returns the step that waits for a line in the log.
 fn wait(text: &str) -> String {
     format!("{{ wait-log = {{ text = {text:?}, frames = 6000 }} }}")
 }
 
 /// Returns a tap on the centre of a tile on the start screen, which has four columns and two rows.
-fn tile(column: u32, row: u32) -> String {
+fn tile(column: f64, row: u32) -> String {
     let y = [0.635, 0.823][row as usize];
-    format!("{{ tap = {{ x = {}, y = {y} }} }}", 0.125 + 0.25 * f64::from(column))
+    format!("{{ tap = {{ x = {}, y = {y} }} }}", 0.125 + 0.25 * column)
 }
 
 /// Returns a device on which a person starts the application. Its settings file has the settings of all tests.
@@ -779,29 +787,31 @@ fn a_first_start_by_hand() {
         wait("start screen: shown"),
         capture("first.png"),
         // The user first refuses, then allows it.
-        tile(0, 1),
+        tile(0.0, 1),
         "{ permission = false }".into(),
         wait("yoro may not use the camera"),
         capture("refused.png"),
-        tile(0, 1),
+        tile(0.0, 1),
         "{ permission = true }".into(),
         wait("the camera gives pictures of 640 x 480"),
         "{ seconds = 0.5 }".into(),
         "\"camera-lost\"".into(),
         wait("The camera was lost"),
         see("short.png"),
-        tile(0, 1),
+        tile(0.0, 1),
         wait("https://goo.gl/abc may be a shortened address"),
         see("wall.png"),
-        tile(0, 1),
+        tile(0.0, 1),
         wait("the camera gives pictures"),
         "{ seconds = 0.5 }".into(),
         see("code.png"),
         wait(&format!("scanned: the viewer {URI}")),
         capture("chosen.png"),
-        tile(1, 1),
+        tile(1.0 - 0.2, 1),
         wait("the log is shared"),
-        tile(3, 1),
+        tile(1.0 + 0.2, 1),
+        wait("lines of notices"),
+        tile(3.0, 1),
         wait("start screen: left"),
         READY.into(),
         "{ seconds = 1 }".into(),
@@ -837,7 +847,7 @@ fn a_first_start_by_hand() {
         capture("reading.png"),
         "{ seconds = 1 }".into(),
         wait("shared: the model my-room"),
-        tile(3, 1),
+        tile(3.0, 1),
         wait("my-room: 1 triangles"),
         "{ frames = 2 }, \"quit\"".into(),
     ];
@@ -886,7 +896,7 @@ fn without_a_camera_the_start_screen_says_so() {
         "\"launch\"".to_owned(),
         wait("start screen: shown"),
         "{ frames = 2 }".into(),
-        tile(0, 1),
+        tile(0.0, 1),
         "{ permission = true }".into(),
         wait("This device has no camera that yoro can use"),
         "{ frames = 2 }, \"quit\"".into(),

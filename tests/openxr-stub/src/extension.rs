@@ -109,13 +109,16 @@ pub fn get_visibility_mask(
         Code::ERROR_VALIDATION_FAILURE,
         format!("there is no view {view}"),
     )?;
-    let [left, right, up, down] = world.script.eyes[view as usize].fov_degrees.map(|a| a.to_radians().tan());
+    // Nothing is hidden in insets.
+    let is_masked = world.script.visibility_mask && view < 2;
+    let eye = &world.script.eyes[view as usize % 2];
+    let [left, right, up, down] = eye.fov_degrees.map(|a| a.to_radians().tan());
     let (outer, inner) = if view == 0 { (left, right) } else { (right, left) };
     let cut = [outer + 0.25 * (inner - outer), up + 0.25 * (down - up)];
     let corner = [[outer, up], [cut[0], up], [outer, cut[1]]];
     let outline = [corner[2], corner[1], [inner, up], [inner, down], [outer, down]];
     let (vertices, indices): (Vec<[f32; 2]>, Vec<u32>) = match kind {
-        _ if !world.script.visibility_mask => Default::default(),
+        _ if !is_masked => Default::default(),
         sys::VisibilityMaskTypeKHR::HIDDEN_TRIANGLE_MESH => (corner.into(), orient(&corner, [0, 1, 2])),
         sys::VisibilityMaskTypeKHR::VISIBLE_TRIANGLE_MESH => (
             outline.into(),

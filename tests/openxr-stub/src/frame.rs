@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
+use glam::{Quat, Vec3};
 use openxr_sys as sys;
 use sys::{Handle, Result as Code};
 
@@ -118,14 +119,16 @@ pub fn locate_views(
     let (ipd, length) = (world.script.ipd(frame), world.script.quaternion_length(frame));
     let views: Vec<(sys::Posef, sys::Fovf)> = (0..number as usize)
         .map(|i| {
-            let eye = world.script.eyes[i];
+            let eye = world.script.eyes[i % 2];
             // For the left eye, outwards means to the left.
-            let side = if i == 0 { -1.0 } else { 1.0 };
+            let side = if i % 2 == 0 { -1.0 } else { 1.0 };
             let (offset, cant) =
                 if number == 1 { (0.0, 0.0) } else { (side * ipd / 2.0, -side * eye.cant_degrees) };
             let turn = glam::Quat::from_rotation_y(cant.to_radians());
             let view = compose(head, (turn, glam::Vec3::new(offset, 0.0, 0.0)));
-            let [left, right, up, down] = eye.fov_degrees.map(f32::to_radians);
+            let inset = if i < 2 { None } else { world.script.inset(i % 2, cant.to_radians(), frame) };
+            let fov = inset.map_or(eye.fov_degrees.map(f32::to_radians), |edges| edges.map(f32::atan));
+            let [left, right, up, down] = fov;
             let fov = sys::Fovf { angle_left: left, angle_right: right, angle_up: up, angle_down: down };
             (raw_pose((view.0 * length, view.1)), fov)
         })
@@ -216,6 +219,9 @@ pub unsafe fn submitted(
                 }
                 views.push(view);
             }
+            if views.len() == 4 {
+                check_insets(world, header.space, &views)?;
+            }
             Ok(Layer::Projection { views })
         }
         sys::StructureType::COMPOSITION_LAYER_QUAD => {
@@ -227,6 +233,42 @@ pub unsafe fn submitted(
         }
         other => Err(forbidden(Code::ERROR_LAYER_INVALID, format!("{other:?} is not offered"))),
     }
+}
+
+/// Refuses four views that are not the left eye, the right eye, the left eye's inset and the right eye's, and insets that
+/// miss some of what the wearer looks at.
+fn check_insets(world: &mut World, space: sys::Space, views: &[View]) -> Result<(), Refusal> {
+    let refuse = |what: String| Err(forbidden(Code::ERROR_VALIDATION_FAILURE, what));
+    let head = compose(inverse(world.space_pose(space)?), world.head());
+    let [left, right] = [0, 1].map(|i| Vec3::from(views[i].position));
+    if (right - left).dot(head.0 * Vec3::X) < -1e-4 {
+        return refuse("view 0 is to the right of view 1".into());
+    }
+    for (eye, side) in [(0, -1.0), (1, 1.0)] {
+        let (wide, inset) = (&views[eye], &views[eye + 2]);
+        let apart = (Vec3::from(wide.position) - Vec3::from(inset.position)).length();
+        let turned = Quat::from_array(wide.orientation).dot(Quat::from_array(inset.orientation));
+        if apart > 1e-4 || turned.abs() < 1.0 - 1e-5 {
+            return refuse(format!("view {} has another pose than view {eye}", eye + 2));
+        }
+        let cant = (-side * world.script.eyes[eye].cant_degrees).to_radians();
+        let Some([left, right, up, down]) = world.script.inset(eye, cant, world.frame()) else { continue };
+        let to_view = Quat::from_array(inset.orientation).inverse() * head.0 * Quat::from_rotation_y(cant);
+        let edges = inset.fov_degrees.map(|angle| angle.to_radians().tan());
+        // Images end at whole pixels.
+        let pixel = 1.01 * (edges[1] - edges[0]) / inset.image.rect[2] as f32;
+        let is_seen = |(x, y): (f32, f32)| {
+            let ray = to_view * Vec3::new(x, y, -1.0);
+            let (x, y) = (ray.x / -ray.z, ray.y / -ray.z);
+            (edges[0] - pixel..edges[1] + pixel).contains(&x)
+                && (edges[3] - pixel..edges[2] + pixel).contains(&y)
+        };
+        if ![(left, up), (left, down), (right, up), (right, down)].into_iter().all(is_seen) {
+            let located = [left, right, up, down].map(|edge| edge.atan().to_degrees());
+            return refuse(format!("view {}, {:?}, does not show {located:?}", eye + 2, inset.fov_degrees));
+        }
+    }
+    Ok(())
 }
 
 /// True if a layer's chain states that its images are upside down.

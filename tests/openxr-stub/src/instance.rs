@@ -19,8 +19,11 @@ pub const SYSTEM: u64 = 1;
 /// The extension for layers whose images are upside down.
 pub const IMAGE_LAYOUT: &str = "XR_FB_composition_layer_image_layout";
 
+/// The extension for four views in instances of OpenXR 1.0.
+pub const QUAD_VIEWS: &str = "XR_VARJO_quad_views";
+
 /// The extensions that can be offered, with their versions.
-pub const EXTENSIONS: [(&str, u32); 16] = [
+pub const EXTENSIONS: [(&str, u32); 17] = [
     ("XR_KHR_opengl_es_enable", 8),
     ("XR_KHR_vulkan_enable", 8),
     ("XR_KHR_vulkan_enable2", 2),
@@ -37,6 +40,7 @@ pub const EXTENSIONS: [(&str, u32); 16] = [
     (IMAGE_LAYOUT, 1),
     ("XR_MSFT_composition_layer_reprojection", 1),
     ("XR_META_recommended_layer_resolution", 1),
+    (QUAD_VIEWS, 2),
 ];
 
 /// Returns the string in an array of characters.
@@ -64,6 +68,7 @@ pub fn enumerate_instance_extension_properties(
     let offered: Vec<sys::ExtensionProperties> = EXTENSIONS
         .iter()
         .filter(|(name, _)| !world.script.missing_extensions.iter().any(|missing| missing == name))
+        .filter(|(name, _)| *name != QUAD_VIEWS || world.script.insets.is_some())
         .map(|(name, version)| {
             let mut property = sys::ExtensionProperties {
                 ty: sys::ExtensionProperties::TYPE,
@@ -124,10 +129,11 @@ pub fn create_instance(world: &mut World, info: &sys::InstanceCreateInfo, out: &
     // SAFETY: a chain of structures, which begin with this header.
     let android = unsafe { in_chain::<sys::BaseInStructure>(info.next, android) }.is_some();
     let handle = world.new_handle();
-    let api = format!("{}.{}.{}", api.major(), api.minor(), api.patch());
+    let (api_version, api) = (api, format!("{}.{}.{}", api.major(), api.minor(), api.patch()));
     world.log.write(&Entry::Instance { application, api, extensions: extensions.clone(), android });
     world.instance = Some(Instance {
         handle,
+        api: api_version,
         extensions,
         lost: false,
         requirements_asked: false,
@@ -319,7 +325,10 @@ pub fn poll_event(world: &mut World, instance: sys::Instance, buffer: &mut sys::
                 ty: sys::EventDataVisibilityMaskChangedKHR::TYPE,
                 next,
                 session,
-                view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
+                view_configuration_type: match known.session.as_ref().map(|session| session.views) {
+                    Some(4) => sys::ViewConfigurationType::PRIMARY_STEREO_WITH_FOVEATED_INSET,
+                    _ => sys::ViewConfigurationType::PRIMARY_STEREO,
+                },
                 view_index: frames % 2,
             },
         ),

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// The environment variable that names the script's file. Without it the headset is [`Script::default`].
@@ -24,6 +25,9 @@ pub struct Script {
     pub stereo: bool,
     /// True if `PRIMARY_MONO` is offered.
     pub mono: bool,
+    /// The inset views of `PRIMARY_STEREO_WITH_FOVEATED_INSET`, or `None` if it is not offered. Instances of OpenXR 1.0
+    /// are offered it only with XR_VARJO_quad_views.
+    pub insets: Option<Insets>,
     /// The left and the right eye. A configuration with one view has the left eye, without its offset.
     pub eyes: [Eye; 2],
     /// Distances between the eyes in metres, each with the frame from which it applies.
@@ -77,6 +81,19 @@ pub struct Eye {
     pub fov_degrees: [f32; 4],
     /// The view's rotation outwards.
     pub cant_degrees: f32,
+}
+
+/// The views that show where the wearer looks. They stay inside those of the eyes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Insets {
+    /// Recommended width and height in pixels.
+    pub size: [u32; 2],
+    /// The angle from the middle to each edge. The size in tangents stays, wherever the inset is.
+    pub radius_degrees: f32,
+    /// The gaze in degrees to the right and up, relative to the head, each with the frame at which it is reached. It
+    /// moves evenly in between.
+    pub gaze: Vec<(u32, [f32; 2])>,
 }
 
 /// An event.
@@ -183,8 +200,8 @@ pub struct Aim {
     pub pitch_degrees: f32,
 }
 
-/// Where pictures are written. `view-0.png` is the left eye's last image, and `quad-0.png` is that of the first quad
-/// layer, with alpha.
+/// Where pictures are written. `view-0.png` is the left eye's last image, `view-2.png` that of its inset, and
+/// `quad-0.png` that of the first quad layer, with alpha.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Pictures {
@@ -206,6 +223,7 @@ impl Default for Script {
             formats: FORMATS.into(),
             stereo: true,
             mono: true,
+            insets: None,
             eyes: [Eye::default(); 2],
             ipd: vec![(0, 0.063)],
             position: [0.0, 1.6, 0.0],
@@ -251,6 +269,40 @@ impl Script {
         let Some(path) = std::env::var_os(VARIABLE) else { return Script::default() };
         let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    }
+
+    /// Returns the gaze in a frame, in degrees to the right and up.
+    pub(crate) fn gaze(&self, frame: u32) -> [f32; 2] {
+        let Some(insets) = &self.insets else { return [0.0; 2] };
+        let reached = |is_past: bool| insets.gaze.iter().filter(move |(at, _)| (*at <= frame) == is_past);
+        let before = reached(true).max_by_key(|(at, _)| *at);
+        let after = reached(false).min_by_key(|(at, _)| *at);
+        match (before, after) {
+            (Some((from, a)), Some((to, b))) => {
+                let part = (frame - from) as f32 / (to - from) as f32;
+                [0, 1].map(|i| a[i] + part * (b[i] - a[i]))
+            }
+            (Some((_, gaze)), None) | (None, Some((_, gaze))) => *gaze,
+            (None, None) => [0.0; 2],
+        }
+    }
+
+    /// Returns the tangents of an inset's edges in a frame: left, right, up, down. It lies inside those of the eye.
+    pub(crate) fn inset(&self, eye: usize, cant_radians: f32, frame: u32) -> Option<[f32; 4]> {
+        let insets = self.insets.as_ref()?;
+        let [right, up] = self.gaze(frame).map(f32::to_radians);
+        let gaze = Quat::from_rotation_y(-right) * Quat::from_rotation_x(up) * Vec3::NEG_Z;
+        let gaze = Quat::from_rotation_y(-cant_radians) * gaze;
+        let half = insets.radius_degrees.to_radians().tan();
+        let wide = self.eyes[eye].fov_degrees.map(|angle| angle.to_radians().tan());
+        let within = |middle: f32, low: f32, high: f32| {
+            let half = half.min((high - low) / 2.0);
+            let middle = middle.clamp(low + half, high - half);
+            [middle - half, middle + half]
+        };
+        let [left, right] = within(gaze.x / -gaze.z, wide[0], wide[1]);
+        let [down, up] = within(gaze.y / -gaze.z, wide[3], wide[2]);
+        Some([left, right, up, down])
     }
 
     /// Returns the distance between the eyes in a frame, in metres.

@@ -10,7 +10,7 @@ use crate::graphics::{self, Graphics};
 use crate::instance::check_system;
 use crate::log::Entry;
 use crate::script::State;
-use crate::world::{Answer, Array, DONE, Event, Refusal, World, forbid_if, forbidden, found};
+use crate::world::{Answer, Array, DONE, Event, Instance, Refusal, World, forbid_if, forbidden, found};
 
 pub struct Session {
     pub handle: u64,
@@ -195,11 +195,17 @@ pub fn begin_session(world: &mut World, session: sys::Session, info: &sys::Sessi
     world.success()
 }
 
+/// True if four views are offered to the application.
+fn offers_insets(world: &World) -> bool {
+    world.script.insets.is_some() && world.instance.as_ref().is_some_and(Instance::has_quad_views)
+}
+
 /// Returns the number of views of a configuration.
 pub fn views_of(world: &World, configuration: sys::ViewConfigurationType) -> Result<u32, Refusal> {
     match configuration {
         sys::ViewConfigurationType::PRIMARY_STEREO if world.script.stereo => Ok(2),
         sys::ViewConfigurationType::PRIMARY_MONO if world.script.mono => Ok(1),
+        sys::ViewConfigurationType::PRIMARY_STEREO_WITH_FOVEATED_INSET if offers_insets(world) => Ok(4),
         other => Err(forbidden(
             Code::ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED,
             format!("{other:?} is not offered"),
@@ -243,7 +249,9 @@ pub fn enumerate_view_configurations(
 ) -> Answer {
     world.instance(instance)?;
     check_system(system)?;
+    // From the highest preference to the lowest.
     let offered: Vec<_> = [
+        (sys::ViewConfigurationType::PRIMARY_STEREO_WITH_FOVEATED_INSET, offers_insets(world)),
         (sys::ViewConfigurationType::PRIMARY_STEREO, world.script.stereo),
         (sys::ViewConfigurationType::PRIMARY_MONO, world.script.mono),
     ]
@@ -267,7 +275,9 @@ pub fn enumerate_view_configuration_views(
     world.instance(instance)?;
     check_system(system)?;
     let number = views_of(world, configuration)? as usize;
-    let sizes: Vec<[u32; 2]> = world.script.eyes[..number].iter().map(|eye| eye.size).collect();
+    let mut sizes: Vec<[u32; 2]> = world.script.eyes.iter().map(|eye| eye.size).collect();
+    sizes.extend(world.script.insets.iter().flat_map(|insets| [insets.size; 2]));
+    sizes.truncate(number);
     views.fill(&sizes, |view, [width, height]| {
         view.recommended_image_rect_width = *width;
         view.recommended_image_rect_height = *height;

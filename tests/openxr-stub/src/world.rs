@@ -117,6 +117,8 @@ pub struct World {
 /// The instance. There is at most one.
 pub struct Instance {
     pub handle: u64,
+    /// The version that the application asked for.
+    pub api: sys::Version,
     pub extensions: Vec<String>,
     pub lost: bool,
     pub requirements_asked: bool,
@@ -131,6 +133,11 @@ pub struct Instance {
 }
 
 impl Instance {
+    /// True if the application may use four views.
+    pub fn has_quad_views(&self) -> bool {
+        self.api >= sys::Version::new(1, 1, 0) || self.has(crate::instance::QUAD_VIEWS)
+    }
+
     /// True if the application has enabled an extension.
     pub fn has(&self, extension: &str) -> bool {
         self.extensions.iter().any(|enabled| enabled == extension)

@@ -265,7 +265,14 @@ fn dropped_files_are_shown_or_refused() {
 
     // If the page is opened as a file, it says what to do.
     let xtask = PathBuf::from(env::var_os("YORO_TEST_WEB").unwrap());
-    page.browser.open(&xtask.ancestors().nth(2).unwrap().join("web/index.html"));
+    let folder = xtask.ancestors().nth(2).unwrap().join("web");
+    page.browser.open(&folder.join("index.html"));
     page.until("!document.getElementById('message').hidden");
     assert!(page.message().unwrap().contains("serve its folder"));
+
+    // It carries the licences of what is in its module and in the example beside it.
+    let notices = std::fs::read_to_string(folder.join("NOTICES.txt")).unwrap();
+    for name in ["\n  wasm-bindgen ", "\nrqrr ", "\nthree.js"] {
+        assert!(notices.contains(name), "{name}: {notices}");
+    }
 }

@@ -9,7 +9,8 @@ use rand::{Rng, SeedableRng};
 use crate::in_memory::{self, InMemory, SynthesizedImage};
 use crate::posed;
 use yoro::eyes::{
-    DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, PoseWarp, View, Warp,
+    DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, MotionLaw, MotionWarp, Pose,
+    PoseWarp, VectorsOf, View, Warp,
 };
 use yoro::opengl::{self, Context, Destination, Options, Outputs};
 use yoro::synthesis::SourceMapEntry;
@@ -145,10 +146,31 @@ pub fn pose_warps() -> Vec<(PoseWarp, DepthRange)> {
     posed::MOTIONS.into_iter().zip(ranges).map(of).collect()
 }
 
+/// Returns laws of motion for both eyes in all depth ranges, in which no term is zero. A picture's colours serve as vectors.
+pub fn motion_warps() -> Vec<(MotionWarp, DepthRange)> {
+    let of = |(i, range)| {
+        let views = eyes([150, 41], Eye::BOTH[i % 2], range).synthesis_views(GuardBand::Pixels(13)).unwrap();
+        let of = [VectorsOf::Source, VectorsOf::Eye][i / 2];
+        let law = MotionLaw { per_z: -0.2, per_depth: 0.1, constant: 0.15, of };
+        (MotionWarp { warp: views.warp, law }, range)
+    };
+    ranges().into_iter().enumerate().map(of).collect()
+}
+
 impl Gl {
     /// Synthesizes any view on OpenGL ES, with its depth.
     pub fn any_view(&self, picture: &Picture<PoseWarp>) -> posed::Image {
         posed::run(self.headless.gl(), &picture.rgba, &picture.depth, &picture.warp, None)
+    }
+
+    /// Synthesizes motion vectors on OpenGL ES, with depth. Tiles contain the same rows as on other interfaces.
+    pub fn motion(&self, picture: &Picture<MotionWarp>) -> posed::Image {
+        let Picture { warp: MotionWarp { warp, law }, rgba, depth } = picture;
+        let [source_rows, target_rows] = [warp.source_size[1], warp.target_size[1]];
+        let (rgba, depth) = (flipped(rgba, source_rows), flipped(depth, source_rows));
+        let warp = MotionWarp { warp: warp.rows_from_top(), law: *law };
+        let drawn = posed::run(self.headless.gl(), &rgba, &depth, &warp, None);
+        posed::Image { rgba: flipped(&drawn.rgba, target_rows), depth: flipped(&drawn.depth, target_rows) }
     }
 }
 

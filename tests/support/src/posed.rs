@@ -1,11 +1,12 @@
-//! Any view of images in memory on OpenGL: upload, run, and read back colour and depth.
+//! Any view, or motion vectors, of images in memory on OpenGL: upload, run, and read back colour and depth.
 
 use std::rc::Rc;
 
 use glam::{EulerRot, Quat, Vec3};
 
-use yoro::eyes::{Pose, PoseWarp, View};
-use yoro::opengl::{AnyView, Context, Destination, Options, Outputs, Part, Source};
+use yoro::eyes::{Pose, View};
+use yoro::opengl::{Context, Destination, Options, Outputs, Part, Pipeline, Source};
+use yoro::synthesis::backend::WarpKind;
 use yoro_gl::{Filter, Format, Program, RenderTarget, ShaderSource, Texture};
 
 /// The synthesized view: RGBA with 8 bits each, and stored depth. Rows run from the bottom, as in GL.
@@ -16,8 +17,9 @@ pub struct Image {
 }
 
 /// Synthesizes from images in memory. If `part` is given, the source is at its corner in textures of its size.
-pub fn run(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &PoseWarp, part: Option<Part>) -> Image {
-    let size = part.map_or(warp.source_size, |part| part.image_size);
+pub fn run<W: WarpKind>(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &W, part: Option<Part>) -> Image {
+    let [source_size, target_size] = warp.sizes();
+    let size = part.map_or(source_size, |part| part.image_size);
     let texture = |format, bytes: &[u8]| {
         let texture = Texture::new(gl, size, format, Filter::Nearest).unwrap();
         texture.upload(bytes);
@@ -28,10 +30,10 @@ pub fn run(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &PoseWarp, part: 
     let depth = texture(Format::R32F, &depth);
     let options = Options { parts: part.is_some(), ..Options::default() };
     let outputs = Outputs { depth: true, ..Outputs::default() };
-    let mut pipeline = AnyView::new(gl, &options, outputs).unwrap();
+    let mut pipeline = Pipeline::<W>::new(gl, &options, outputs).unwrap();
     let formats = [(Format::Rgba8, Filter::Nearest)];
     // Not at the corner of the framebuffer, where all places would be the same.
-    let size = warp.target_size;
+    let size = target_size;
     let target = RenderTarget::new(gl, size.map(|n| n + 7), &formats, Some(Format::Depth32F)).unwrap();
     let place = Destination { framebuffer: Some(target.raw()), origin: [3, 5], size };
     let source = Source { part, ..Source::new(color.raw(), depth.raw()) };

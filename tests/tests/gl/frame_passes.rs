@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
-use yoro::eyes::{EyeOptions, EyePair, GuardBand};
-use yoro_assets::ShadingStyle;
+use yoro::eyes::{Eye, EyeOptions, EyePair, GuardBand, Ndc};
+use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
+use yoro_assets::{Motion, Scene, ShadingStyle};
 use yoro_bench::bench::Contender;
 use yoro_context::{Backend, Headless};
 use yoro_estimate::{Assumed, Command, Piece, Recorder, pieces};
@@ -12,7 +13,9 @@ use yoro_gl::{
     Capabilities, Context, Destination, Filter, Format, GlApi, Program, RasterState, RenderTarget,
     ShaderSource, Shape, Texture,
 };
-use yoro_render::stereo::{self, DepthTarget, Method, NearFieldPolicy, Pipeline, StereoFrame, StereoOptions};
+use yoro_render::stereo::{
+    self, DepthTarget, Method, MotionTarget, NearFieldPolicy, Pipeline, StereoFrame, StereoOptions,
+};
 use yoro_render::{DepthCopy, NearestDepth, PASSES, PreparedScene, RenderSettings, TilePart};
 use yoro_tests::{on_every_backend, scene};
 
@@ -41,6 +44,7 @@ fn passes_do_what_they_declare() {
                 let settings = RenderSettings { msaa, shadow_map_size: 64, ..RenderSettings::default() };
                 let mut scene = scene::every_material(style);
                 scene::keep_plain_and_full(&mut scene);
+                move_squares(&mut scene);
                 recorder.start();
                 let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
                 let made = pieces(&recorder.take(), &Assumed::default());
@@ -79,6 +83,9 @@ fn frames() -> Vec<(Method, StereoOptions)> {
     let methods = Contender::methods().into_iter().filter(|contender| *contender != paper);
     let mut frames: Vec<_> = methods.filter_map(Contender::method).collect();
     let synthesis = StereoOptions { policy: None, ..StereoOptions::default() };
+    for method in [Method::Conventional, Method::Synthesized] {
+        frames.push((method, StereoOptions { half_rate: true, ..synthesis }));
+    }
     frames.push((Method::Synthesized, StereoOptions { near_field: Some(3.0), ..synthesis }));
     frames.push((Method::Synthesized, StereoOptions { guard_band: GuardBand::Auto(0.1), ..synthesis }));
     frames
@@ -86,7 +93,19 @@ fn frames() -> Vec<(Method, StereoOptions)> {
     frames
 }
 
-/// Returns what a method's third frame does, without and with depth for a compositor.
+/// Moves all squares of a scene but its floor.
+fn move_squares(scene: &mut Scene) {
+    let vertices = 0..scene.model.vertices.len() - 4;
+    let rest = scene.model.vertices[vertices.clone()].to_vec();
+    let values = vec![0.0, 0.0, 0.0, 0.1, 0.0, 0.0];
+    let moves = Track { times: vec![0.0, 1.0], values, ..Track::default() };
+    let nodes = vec![Node { moves: Some(moves), ..Node::default() }];
+    let meshes = vec![MovingMesh { vertices, rest, carrier: Carrier::Node(0), morph: None }];
+    scene.motion = Motion { loops: vec![1.0], nodes, meshes, ..Motion::default() };
+}
+
+/// Returns what a method's third frame does, plainly, with depth for a compositor, and with motion vectors; and what it does
+/// to show that frame again.
 fn record(
     gl: &Rc<Context>,
     recorder: &Recorder,
@@ -102,18 +121,24 @@ fn record(
     let copy = DepthCopy::new(gl).unwrap();
     let mut method = stereo::create(gl, method, settings, options).unwrap();
     let mut all = Vec::new();
-    for has_depth in [false, true] {
+    let formats = [(Format::Rgba16F, Filter::Nearest)];
+    let vectors = RenderTarget::new(gl, [24, 16], &formats, Some(Format::Depth32F)).unwrap();
+    let motion =
+        |eye| MotionTarget { to: Destination::whole(&vectors), former: pair.view(eye), ndc: Ndc::ZeroToOne };
+    for more in 0..3 {
         let mut to = frame.targets();
-        if has_depth {
-            for eye in &mut to {
-                eye.depth = Some(DepthTarget { to: Destination::whole(&depth), copy: &copy });
-            }
+        for (eye, to) in Eye::BOTH.into_iter().zip(&mut to) {
+            to.depth = (more == 1).then(|| DepthTarget { to: Destination::whole(&depth), copy: &copy });
+            to.motion = (more == 2).then(|| motion(eye));
         }
         for _ in 0..2 {
             method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).unwrap();
         }
         recorder.start();
         method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).unwrap();
+        if options.half_rate {
+            assert!(method.show_again(&pair, &to, 0.5).unwrap());
+        }
         all.extend(pieces(&recorder.take(), &Assumed::default()));
     }
     all

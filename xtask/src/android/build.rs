@@ -9,14 +9,15 @@ use anyhow::{Context as _, bail};
 
 use crate::folders::{root, target_folder, write};
 use crate::ndk::stand_in::StandIn;
-use crate::ndk::target::{PAGE, TARGET_API};
+use crate::ndk::target::{ARCHITECTURES, PAGE, TARGET_API};
+use crate::notices;
 use crate::rust::{Panic, Rust, anonymous_paths, build_std};
 
 use super::cargo_apk;
-use super::check;
+use super::check::{self, Store};
 use super::keystore::Keystore;
 use super::loader::Loaders;
-use super::pack::{pack, sign};
+use super::pack::{Variant, pack, sign};
 use super::toolchain::{self, Surroundings, Toolchain};
 
 /// `apk_name` of android/Cargo.toml.
@@ -33,6 +34,8 @@ pub struct Options {
     pub openxr_loaders: Vec<PathBuf>,
     /// Also convert the APK to a bundle for a store.
     pub bundle: bool,
+    /// Also pack an APK for Meta's store.
+    pub quest: bool,
 }
 
 /// Arguments of apksigner for a bundle, signed as a JAR. Given the API level, apksigner needs no manifest.
@@ -100,18 +103,29 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let folder = if options.release { "android" } else { "debug" };
     let folder = target.join("android/build").join(folder).join("apk");
     let android_jar = sdk.join(format!("platforms/android-{TARGET_API}/android.jar"));
-    let built = pack(&folder, NAME, &android_jar, &root().join("android/res"), &keystore)?;
-    let apk = target.join("apk").join(format!("{NAME}{}.apk", if options.release { "" } else { "-debug" }));
-    let content = fs::read(&built).with_context(|| format!("{} cannot be read", built.display()))?;
-    write(&apk, content)?;
-
-    let mut passed = check::check(&apk)?;
+    let notices = notices::text("yoro-android", ARCHITECTURES[0].triple, &[])?;
+    let kind = if options.release { "" } else { "-debug" };
+    let packed = |variant: Variant, suffix: &str| {
+        let resources = root().join("android/res");
+        let built = pack(variant, &folder, NAME, &android_jar, &resources, &notices, &keystore)?;
+        let apk = target.join("apk").join(format!("{NAME}{suffix}{kind}.apk"));
+        let content = fs::read(&built).with_context(|| format!("{} cannot be read", built.display()))?;
+        write(&apk, content)?;
+        println!("{}", apk.display());
+        anyhow::Ok(apk)
+    };
+    let mut passed = true;
+    if options.quest {
+        passed &= check::check(&packed(Variant::Quest, "-quest")?, Some(Store::Quest))?;
+    }
+    let apk = packed(Variant::All, "")?;
+    passed &= check::check(&apk, None)?;
     if options.bundle {
         let bundle = apk.with_extension("aab");
         check::bundle(&apk, &bundle)?;
         sign(&bundle, &keystore, &JAR)?;
         println!("{}", bundle.display());
-        passed &= check::check(&bundle)?;
+        passed &= check::check(&bundle, Some(Store::Play))?;
     }
     if options.release && keystore.debug {
         println!(

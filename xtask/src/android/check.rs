@@ -5,6 +5,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf, absolute};
 
 use anyhow::{Context as _, bail};
+use clap::ValueEnum;
 
 use crate::{cargo, console};
 
@@ -28,12 +29,27 @@ fn absolute_path(path: &Path) -> anyhow::Result<PathBuf> {
     absolute(path).context("the current folder is gone: change to another")
 }
 
-/// Checks whether Android will install and start an APK, and prints the result. Returns true if it will.
+/// A store that an APK or a bundle is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Store {
+    /// Meta Horizon Store
+    Quest,
+    /// Google Play
+    Play,
+}
+
+/// Checks whether Android will install and start an APK, or whether a store takes it, and prints the result. Returns true
+/// if so.
 ///
 /// # Errors
 /// Fails if the file is missing or not an APK, or a tool for the checks is missing.
-pub fn check(apk: &Path) -> anyhow::Result<bool> {
-    let (report, passed) = run(&[&"check", &absolute_path(apk)?])?;
+pub fn check(apk: &Path, store: Option<Store>) -> anyhow::Result<bool> {
+    let store = match store {
+        None => "-",
+        Some(Store::Quest) => "quest",
+        Some(Store::Play) => "play",
+    };
+    let (report, passed) = run(&[&"check", &absolute_path(apk)?, &store])?;
     console::print(&report);
     Ok(passed)
 }

@@ -1,8 +1,8 @@
-//! The parts of the manifest that cargo-apk cannot express.
+//! The parts of the manifest that cargo-apk cannot express, and the manifest of the APK for Meta's store.
 
-use anyhow::Context as _;
+use anyhow::{Context as _, ensure};
 
-use crate::ndk::target::{NATIVE_LIBRARIES, PROPERTIES};
+use crate::ndk::target::{NATIVE_LIBRARIES, PROPERTIES, QUEST_TARGET_API, TARGET_API};
 
 /// Completes the manifest written by cargo-apk. Adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] to the application, and
 /// declares it a game: from API level 36 on, Android lets only games fix their orientation on large screens.
@@ -10,16 +10,94 @@ use crate::ndk::target::{NATIVE_LIBRARIES, PROPERTIES};
 /// # Errors
 /// Fails if the manifest has no application.
 pub fn complete(manifest: &str) -> anyhow::Result<String> {
-    const END: &str = "</application>";
-    let (before, after) = manifest
-        .split_once(END)
-        .context("cargo-apk has written a manifest without </application>: is it another version?")?;
     let libraries = NATIVE_LIBRARIES
         .map(|name| format!(r#"<uses-native-library android:name="{name}" android:required="false"/>"#));
     let properties = PROPERTIES
         .map(|(name, value)| format!(r#"<property android:name="{name}" android:value="{value}"/>"#));
-    let before = before.replacen("<application", r#"<application android:appCategory="game""#, 1);
-    Ok([&before, &*libraries.concat(), &*properties.concat(), END, after].concat())
+    let whole = at_the_end(manifest, &[libraries.concat(), properties.concat()].concat())?;
+    Ok(as_game(&whole))
+}
+
+/// Changes the manifest written by cargo-apk into that of the APK for Meta's store. It must conform to
+/// <https://developers.meta.com/horizon/resources/publish-mobile-manifest> (5 March 2026) or its upload fails, and may
+/// ask for no permission that it does not use. What concerns other makers' headsets, phones and device farms goes, too:
+/// on a Quest, nothing would use it.
+///
+/// # Errors
+/// Fails if the manifest lacks what is to be changed.
+pub fn for_quest(manifest: &str) -> anyhow::Result<String> {
+    let [own, others] = [NATIVE_LIBRARIES[1], NATIVE_LIBRARIES[0]];
+    debug_assert!(own.contains("oculus") && !others.contains("oculus"));
+    let mut text = manifest.to_owned();
+    for (from, to) in [
+        (
+            format!(r#"android:targetSdkVersion="{TARGET_API}""#),
+            format!(r#"android:targetSdkVersion="{QUEST_TARGET_API}""#),
+        ),
+        (r#" android:versionCode="#.into(), r#" android:installLocation="auto" android:versionCode="#.into()),
+        (
+            r#""android.hardware.vr.headtracking" android:required="false""#.into(),
+            r#""android.hardware.vr.headtracking" android:required="true""#.into(),
+        ),
+        // Only Quest 1 needs `all`, and the store's applications do not come to it any more.
+        (r#""all|quest|"#.into(), r#"""#.into()),
+    ] {
+        ensure!(text.contains(&from), "cargo-apk's manifest has no {from}: is it another version?");
+        text = text.replacen(&from, &to, 1);
+    }
+    for (element, mark) in [
+        ("uses-feature", "android.hardware.camera"),
+        ("uses-permission", "android.permission.CAMERA"),
+        ("meta-data", "pvr.app.type"),
+        ("meta-data", "pvr.sdk.version"),
+        ("meta-data", "com.google.test.loops"),
+        ("category", "com.htc.intent.category.VRAPP"),
+        ("intent-filter", "com.google.intent.action.TEST_LOOP"),
+        ("intent-filter", "android.intent.action.SEND"),
+        ("intent-filter", "android.intent.action.VIEW"),
+    ] {
+        text = without(&text, element, mark)?;
+    }
+    let library = format!(r#"<uses-native-library android:name="{own}" android:required="false"/>"#);
+    Ok(as_game(&at_the_end(&text, &library)?))
+}
+
+fn as_game(manifest: &str) -> String {
+    manifest.replacen("<application", r#"<application android:appCategory="game""#, 1)
+}
+
+/// Adds elements to the application.
+fn at_the_end(manifest: &str, elements: &str) -> anyhow::Result<String> {
+    const END: &str = "</application>";
+    let (before, after) = manifest
+        .split_once(END)
+        .context("cargo-apk has written a manifest without </application>: is it another version?")?;
+    Ok([before, elements, END, after].concat())
+}
+
+/// Removes all elements of this name that contain `mark`.
+fn without(manifest: &str, element: &str, mark: &str) -> anyhow::Result<String> {
+    let (start, end) = (format!("<{element}"), format!("</{element}>"));
+    let mut kept = String::new();
+    let mut rest = manifest;
+    let mut count = 0;
+    while let Some(at) = rest.find(&start) {
+        let (before, from) = rest.split_at(at);
+        let tag = from.find('>').context("a tag has no end")? + 1;
+        let length = match from[..tag].ends_with("/>") {
+            true => tag,
+            false => from.find(&end).context("an element has no end")? + end.len(),
+        };
+        kept.push_str(before);
+        if from[..length].contains(mark) {
+            count += 1;
+        } else {
+            kept.push_str(&from[..length]);
+        }
+        rest = &from[length..];
+    }
+    ensure!(count > 0, "cargo-apk's manifest has no {element} with {mark}: is it another version?");
+    Ok(kept + rest)
 }
 
 #[cfg(test)]
@@ -39,5 +117,12 @@ mod tests {
              </application></manifest>"
         );
         assert!(complete("<manifest/>").unwrap_err().to_string().contains("</application>"));
+    }
+
+    #[test]
+    fn elements_go_with_all_that_is_in_them() {
+        let text = r#"<a><b x="1"/><b><c y="2"/></b><b x="2"></b></a>"#;
+        assert_eq!(without(text, "b", "\"2\"").unwrap(), r#"<a><b x="1"/></a>"#);
+        assert!(without(text, "b", "\"3\"").unwrap_err().to_string().contains("no b with \"3\""));
     }
 }

@@ -8,32 +8,58 @@ use anyhow::{Context as _, bail};
 
 use super::keystore::Keystore;
 use super::manifest;
+use crate::folders::write;
 use crate::ndk::sdk::build_tool;
+use crate::ndk::target::ARCHITECTURES;
+use crate::notices;
 
-/// Packs, aligns and signs an APK from cargo-apk's output in `folder`: its manifest, which is completed, and the
-/// libraries in its APK `name`. Returns the path of the new APK, in the same folder.
+/// Where an APK is to go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variant {
+    /// Phones and all headsets.
+    All,
+    /// Meta's store.
+    Quest,
+}
+
+/// Packs, aligns and signs an APK from cargo-apk's output in `folder`: its manifest, which is completed for the variant,
+/// and the libraries in its APK `name`. `notices` goes into its assets. Returns the path of the new APK, in the same
+/// folder.
 ///
 /// # Errors
 /// Fails if a tool fails, or cargo-apk's output has an unexpected form.
 pub fn pack(
+    variant: Variant,
     folder: &Path,
     name: &str,
     android_jar: &Path,
     resources: &Path,
+    notices: &str,
     keystore: &Keystore,
 ) -> anyhow::Result<PathBuf> {
     let at = |file: &str| folder.join(file);
     let written = at("AndroidManifest.xml");
     let text =
         fs::read_to_string(&written).with_context(|| format!("{} cannot be read", written.display()))?;
-    let text = manifest::complete(&text)?;
+    let text = match variant {
+        Variant::All => manifest::complete(&text)?,
+        Variant::Quest => manifest::for_quest(&text)?,
+    };
     // aapt requires this file name.
     let whole = at("complete/AndroidManifest.xml");
     fs::create_dir_all(at("complete"))
         .and_then(|()| fs::write(&whole, text))
         .with_context(|| format!("{} cannot be written", whole.display()))?;
+    let assets = at("assets");
+    write(&assets.join(notices::FILE), notices)?;
     let [unaligned, finished] =
         ["complete-unaligned", "complete"].map(|kind| at(&format!("{name}-{kind}.apk")));
+
+    let libraries = libraries(&at(&format!("{name}.apk")))?;
+    let libraries = libraries.iter().filter(|path| match variant {
+        Variant::All => true,
+        Variant::Quest => path.contains(ARCHITECTURES[0].abi),
+    });
 
     let tool = |tool: &str| -> anyhow::Result<Command> {
         let mut command = Command::new(build_tool(tool)?);
@@ -43,9 +69,9 @@ pub fn pack(
     };
     let mut package = tool("aapt")?;
     package.args(["package", "-f", "-F"]).arg(&unaligned).arg("-M").arg(&whole);
-    package.arg("-I").arg(android_jar).arg("-S").arg(resources);
+    package.arg("-I").arg(android_jar).arg("-S").arg(resources).arg("-A").arg(&assets);
     run(&mut package)?;
-    run(tool("aapt")?.arg("add").arg(&unaligned).args(libraries(&at(&format!("{name}.apk")))?))?;
+    run(tool("aapt")?.arg("add").arg(&unaligned).args(libraries))?;
     run(tool("zipalign")?.args(["-f", "4"]).arg(&unaligned).arg(&finished))?;
     sign(&finished, keystore, &[])?;
     Ok(finished)

@@ -4,6 +4,8 @@
 pub const MIN_API: u32 = 29;
 /// The target API level.
 pub const TARGET_API: u32 = 36;
+/// The target API level of the APK for Meta's store, which takes 32 to 34 of immersive applications.
+pub const QUEST_TARGET_API: u32 = 34;
 /// The largest page size of devices in bytes, which Android requires new applications to support.
 pub const PAGE: u64 = 16 * 1024;
 

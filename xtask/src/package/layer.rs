@@ -40,7 +40,7 @@ fn aar_for(architectures: &[Architecture], folder: &Path) -> anyhow::Result<Path
         ("AndroidManifest.xml".to_owned(), android_manifest("org.yoro.layer").into()),
         (format!("assets/openxr/1/api_layers/implicit.d/{MANIFEST}"), manifest),
     ];
-    files.extend(licences()?);
+    files.extend(licences("yoro-openxr-layer")?);
     // Shared with the C library, which has the same dependencies.
     let build_folder = target_folder()?.join("android/capi");
     for &architecture in architectures {

@@ -1,5 +1,6 @@
 //! An archive for Linux: header, libraries, files for pkg-config and CMake, examples.
 
+use std::env::consts::ARCH;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
@@ -10,6 +11,7 @@ use anyhow::{Context as _, bail};
 use crate::arm64;
 use crate::cargo::cargo;
 use crate::folders::{copy, remove, root, target_folder, write};
+use crate::notices;
 
 use super::portable::{self, OLDEST_GLIBC};
 use super::texts::{cmake, cmake_version, manual, pkg_config, readme, soname, with_links};
@@ -19,7 +21,7 @@ use super::{Built, VERSION, build};
 pub fn native(folder: &Path) -> anyhow::Result<PathBuf> {
     let target = target_folder()?;
     let built = portable(cargo(), None, portable::native_compiler(), &target)?;
-    archive(&built, std::env::consts::ARCH, "strip", folder)
+    archive(&built, ARCH, "strip", folder)
 }
 
 /// Makes the package for arm64, with this machine's clang and Debian's arm64 libraries.
@@ -45,9 +47,9 @@ fn portable(
     Ok(built)
 }
 
-/// Packs `yoro-VERSION-linux-ARCHITECTURE.tar.xz`, and returns its path.
+/// Packs `libyoro-VERSION-linux-ARCHITECTURE.tar.xz`, and returns its path.
 fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> anyhow::Result<PathBuf> {
-    let name = format!("yoro-{VERSION}-linux-{architecture}");
+    let name = format!("libyoro-{VERSION}-linux-{architecture}");
     let content = folder.join(&name);
     remove(&content)?;
     let package = root().join("app/engines/c");
@@ -74,16 +76,24 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
         let name = Path::new(document).file_name().unwrap_or_default();
         copy(&root().join(document), &documents.join(name))?;
     }
+    let notices = notices::text("yoro-c", &format!("{architecture}-unknown-linux-gnu"), &[])?;
+    write(&documents.join(notices::FILE), notices)?;
     let guide = root().join("docs/engines.md");
     let text = fs::read_to_string(&guide).with_context(|| format!("{} cannot be read", guide.display()))?;
     write(&documents.join("guide.md"), with_links(&manual(&text), packaged))?;
     write(&content.join("README.md"), readme(architecture, OLDEST_GLIBC))?;
+    tar(folder, &name)
+}
+
+/// Packs a folder in `folder` as `NAME.tar.xz` beside it, and returns its path.
+pub fn tar(folder: &Path, name: &str) -> anyhow::Result<PathBuf> {
     let packed = folder.join(format!("{name}.tar.xz"));
     let unfinished = folder.join(format!("{name}.tar.xz.tmp"));
     let mut tar = Command::new("tar");
-    // These options make the archive depend only on the files.
+    // These options make the archive depend only on the files, and not on the builder's umask.
     tar.args(["--create", "--xz", "--sort=name", "--owner=0", "--group=0", "--numeric-owner"]);
-    tar.args(["--mtime=@0", "--file"]).arg(&unfinished).arg("--directory").arg(folder).arg(&name);
+    tar.args(["--mode=u+rwX,go=rX", "--mtime=@0", "--file"]).arg(&unfinished);
+    tar.arg("--directory").arg(folder).arg(name);
     run(&mut tar)?;
     fs::rename(&unfinished, &packed).with_context(|| format!("{} cannot be written", packed.display()))?;
     println!("{}", packed.display());
@@ -101,7 +111,8 @@ fn packaged(target: &str) -> Option<String> {
     }
 }
 
-fn run(command: &mut Command) -> anyhow::Result<()> {
+/// Runs a program whose output nobody reads.
+pub fn run(command: &mut Command) -> anyhow::Result<()> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command.output().with_context(|| format!("{program} cannot be started: install it"))?;
     if !output.status.success() {
@@ -125,6 +136,18 @@ mod tests {
             assert!(page.contains(&format!("\ncc share/yoro/examples/{sample} ")), "{sample}");
         }
         assert!(page.contains("glibc 2.28"));
+    }
+
+    #[test]
+    fn the_same_files_give_the_same_archive() {
+        let pack = |names: [&str; 2]| {
+            let folder = tempfile::tempdir().unwrap();
+            for name in names {
+                write(&folder.path().join("packed").join(name), name).unwrap();
+            }
+            fs::read(tar(folder.path(), "packed").unwrap()).unwrap()
+        };
+        assert!(pack(["lib/a", "b"]) == pack(["b", "lib/a"]));
     }
 
     #[test]

@@ -1,11 +1,12 @@
-//! Packages for others' builds: the C library for Linux and Android, the OpenXR layer for Android, the Godot add-on, the
-//! package for three.js.
+//! Packages for others' builds: the C library for Linux and Android, the OpenXR layer, the Godot add-on, the package for
+//! three.js.
 
 mod android;
 mod godot;
 mod layer;
-mod linux;
-mod portable;
+pub mod layer_linux;
+pub mod linux;
+pub mod portable;
 mod texts;
 mod three;
 
@@ -22,7 +23,7 @@ use crate::folders::{root, target_folder};
 pub use layer::aar_for_tests as layer_for_tests;
 
 /// The version of all packages.
-const VERSION: &str = env!("CARGO_PKG_VERSION");
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The target of a package.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -35,6 +36,10 @@ pub enum Target {
     Android,
     /// The OpenXR API layer for Android on arm64 and x86_64, an AAR
     AndroidLayer,
+    /// The OpenXR API layer for Linux on this machine's processor, an archive
+    LayerLinux,
+    /// The OpenXR API layer for Linux on arm64, an archive
+    LayerLinuxAarch64,
     /// The add-on for Godot, a zip
     Godot,
     /// The package for three.js, a tarball of npm's
@@ -54,6 +59,8 @@ pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
         Target::LinuxAarch64 => linux::aarch64(&folder),
         Target::Android => android::aar(&folder),
         Target::AndroidLayer => layer::aar(&folder),
+        Target::LayerLinux => layer_linux::native(&folder),
+        Target::LayerLinuxAarch64 => layer_linux::aarch64(&folder),
         Target::Godot => godot::zip(&folder),
         Target::Three => three::tarball(&folder),
     };

@@ -72,11 +72,23 @@ pub fn check(file: &Path) -> anyhow::Result<()> {
             file.display()
         );
     }
+    check_folders(file, &content)
+}
+
+/// Checks that a program or a library contains none of the builder's folders, and returns the oldest glibc that it runs
+/// with.
+pub fn needed_glibc(file: &Path) -> anyhow::Result<(u32, u32)> {
+    let content = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
+    check_folders(file, &content)?;
+    newest_glibc(&content).with_context(|| format!("{} names no version of glibc", file.display()))
+}
+
+fn check_folders(file: &Path, content: &[u8]) -> anyhow::Result<()> {
     let home = std::env::home_dir();
     for folder in [Some(root()), home.as_deref().map(Path::to_owned)].into_iter().flatten() {
         let name = folder.to_string_lossy().into_owned();
         // A home such as / or /root does not identify anybody, only folders in it do.
-        if holds(&content, format!("{name}/").as_bytes()) {
+        if holds(content, format!("{name}/").as_bytes()) {
             bail!("{} holds the builder's folder {name}: remap it", file.display());
         }
     }

@@ -124,7 +124,7 @@ pub fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
          rendered one; `any_view` does so with a view from another pose. A program of your own links `yoro` as they do;\n\
          `lib/libyoro.a` in place of it needs no `-rpath`.\n\
          \n\
-         MIT or Apache 2.0, at your option: `share/doc/yoro`.\n"
+         MIT or Apache 2.0, at your option: `share/doc/yoro`, with the notices of others' code in the library.\n"
     )
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 
 use super::VERSION;
-use crate::folders::{copy, remove, root};
+use crate::folders::{copy, copy_folder, remove, root};
 use crate::web::npm;
 
 const SOURCE: &str = "app/engines/three";
@@ -33,14 +33,4 @@ pub fn tarball(folder: &Path) -> anyhow::Result<PathBuf> {
     let file = folder.join(format!("yoro-three-{VERSION}.tgz"));
     println!("{}", file.display());
     Ok(file)
-}
-
-/// Copies a folder and the folders in it.
-fn copy_folder(from: &Path, to: &Path) -> anyhow::Result<()> {
-    for entry in fs::read_dir(from).with_context(|| format!("{} cannot be read", from.display()))? {
-        let path = entry?.path();
-        let copied = to.join(path.file_name().unwrap_or_default());
-        if path.is_dir() { copy_folder(&path, &copied)? } else { copy(&path, &copied)? }
-    }
-    Ok(())
 }

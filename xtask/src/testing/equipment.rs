@@ -111,6 +111,7 @@ static ITEMS: [Item; 13] = [
                 yes: true,
                 openxr_loaders: Vec::new(),
                 bundle: false,
+                quest: true,
             })
         }),
     },

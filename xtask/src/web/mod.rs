@@ -8,12 +8,14 @@ mod three;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 
 use crate::cargo::{self, announce};
-use crate::folders::{copy, remove, root, target_folder};
+use crate::folders::{copy, remove, root, target_folder, write};
+use crate::notices;
 use crate::rust::{Panic, Rust, anonymous_paths, build_std};
 
 pub use npm::{check_types, emulator, npm, three as three_modules};
@@ -91,9 +93,12 @@ pub fn build() -> anyhow::Result<PathBuf> {
     copy(&video, &renamed)?;
     bind(&renamed, &unfinished.join(site::VERSION), &site::sources())?;
     site::assemble(&unfinished)?;
-    if let Err(error) = three::example(&unfinished.join("three")) {
-        println!("the example for three.js was left out: {error:#}");
+    let mut notices = notices::text("yoro-web", TRIPLE, &["--all-features"])?;
+    match three::example(&unfinished.join("three")) {
+        Ok(licence) => notices.push_str(&licence),
+        Err(error) => println!("the example for three.js was left out: {error:#}"),
     }
+    write(&unfinished.join(notices::FILE), notices)?;
     remove(&folder)?;
     fs::rename(&unfinished, &folder).with_context(|| format!("{} cannot be written", folder.display()))?;
     println!(
@@ -105,6 +110,21 @@ pub fn build() -> anyhow::Result<PathBuf> {
     if visit > BUDGET {
         bail!("{visit} bytes are more than the {BUDGET} that a phone is to load: leave something out");
     }
+    Ok(folder)
+}
+
+/// Builds the page unless this process has done so, and returns its folder.
+///
+/// # Errors
+/// Fails as [`build`] does.
+pub fn build_once() -> anyhow::Result<PathBuf> {
+    static BUILT: Mutex<Option<PathBuf>> = Mutex::new(None);
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(folder) = &*built {
+        return Ok(folder.clone());
+    }
+    let folder = build()?;
+    *built = Some(folder.clone());
     Ok(folder)
 }
 

@@ -1,5 +1,6 @@
 //! The example of the package for three.js beside the page, bundled with three.js.
 
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 
@@ -8,11 +9,11 @@ use anyhow::{Context as _, bail};
 use super::npm;
 use crate::folders::{copy, root};
 
-/// Writes the example into a folder.
+/// Writes the example into a folder, and returns the notice of three.js, which is in it.
 ///
 /// # Errors
 /// Fails if the npm packages cannot be had, or the example cannot be bundled.
-pub fn example(folder: &Path) -> anyhow::Result<()> {
+pub fn example(folder: &Path) -> anyhow::Result<String> {
     let package = root().join("app/engines/three");
     let modules = npm::three()?;
     let mut esbuild = Command::new("node");
@@ -26,5 +27,8 @@ pub fn example(folder: &Path) -> anyhow::Result<()> {
     for name in ["index.html", "style.css"] {
         copy(&package.join("examples").join(name), &folder.join(name))?;
     }
-    Ok(())
+    let licence = modules.join("three/LICENSE");
+    let text =
+        fs::read_to_string(&licence).with_context(|| format!("{} cannot be read", licence.display()))?;
+    Ok(format!("\n{}\nthree.js, in the folder three (MIT)\n\n{text}", "=".repeat(78)))
 }

@@ -7,6 +7,7 @@
 mod camera;
 mod headset;
 
+use std::io::Read as _;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
@@ -486,7 +487,10 @@ impl Activity {
                 Ok(action) => {
                     log::info!("{action}");
                     match action {
-                        Action::ShareLog => self.java.share(results::recent()),
+                        Action::ShareLog => self.java.share("The log of yoro", results::recent()),
+                        Action::ShareNotices => {
+                            self.java.share("Code of others in yoro", notices(&self.app));
+                        }
                         Action::Scan(is_on) => wants_scan = is_on,
                         _ => {}
                     }
@@ -579,6 +583,17 @@ impl Activity {
         self.summarize();
         results::end();
     }
+}
+
+/// Returns the notices of others' code, which the APK has among its assets.
+fn notices(app: &AndroidApp) -> String {
+    let mut text = String::new();
+    let asset = app.asset_manager().open(c"NOTICES.txt");
+    match asset.map(|mut asset| asset.read_to_string(&mut text)) {
+        Some(Ok(_)) => log::info!("{} lines of notices", text.lines().count()),
+        Some(Err(_)) | None => "This APK was packed without its NOTICES.txt.".clone_into(&mut text),
+    }
+    text
 }
 
 /// Returns a window's context, which is created by the first call.

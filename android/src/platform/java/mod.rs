@@ -277,7 +277,7 @@ impl Java {
     }
 
     /// Lets the user share a text with another application. An intent can hold at most half a megabyte.
-    pub fn share(&self, shared: String) {
+    pub fn share(&self, title: &'static str, shared: String) {
         self.on_main_thread("sharing", move |env, activity| {
             let action = JString::new(env, SEND)?;
             let intent = Intent::new(env, &action)?;
@@ -286,7 +286,7 @@ impl Java {
             let (name, value) =
                 (JString::new(env, "android.intent.extra.TEXT")?, JString::new(env, &shared)?);
             intent.put_extra(env, &name, &value)?;
-            let title = JString::new(env, "The log of yoro")?;
+            let title = JString::new(env, title)?;
             let chooser = Intent::create_chooser(env, &intent, title.as_char_sequence())?;
             activity.start_activity(env, &chooser)
         });

@@ -932,6 +932,83 @@ typedef struct {
 } YoroComposition;
 
 /**
+ * The image in whose normalized device coordinates motion vectors are given. A vector is the place of a surface minus its
+ * place in the former frame, each with the view of its own frame, so that the head's motion is in it. It has three
+ * components: two do not tell how a surface that comes nearer moves in the other eye.
+ */
+typedef uint32_t YoroVectors;
+/**
+ * The rendered view with its guard band: what an engine writes with the projection of YoroViews::source.
+ */
+#define YORO_VECTORS_SOURCE 0
+/**
+ * The rendered eye without the guard band: its own vectors are a part of the image.
+ */
+#define YORO_VECTORS_EYE 1
+
+/**
+ * Two frames, of which the vectors of the newer one point to the former.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroMotion).
+   */
+  uint32_t struct_size;
+  /**
+   * The image that the vectors refer to.
+   */
+  YoroVectors vectors;
+  /**
+   * The eyes of this frame. Their size is that of an eye's vectors, as a runtime recommends it, not that of the image.
+   * The clip volume is that of the vectors.
+   */
+  const YoroEyes *eyes;
+  /**
+   * The eyes of the former frame, of the same size. Distance, angles and planes may have changed.
+   */
+  const YoroEyes *former;
+  /**
+   * Receives error messages.
+   */
+  YoroMessages messages;
+} YoroMotion;
+
+/**
+ * What yoro_gl_synthesize_motion and yoro_vk_record_motion need to know of two frames. yoro_motion_warp fills it. It can be
+ * copied and kept.
+ *
+ * A surface with the vector v and the stored depth d in the source has the vector
+ * `(a * v.x + per_z * v.z + per_depth * d + constant, b * v.y, v.z)` in the eye; a and b are 1, or for YORO_VECTORS_SOURCE
+ * the source's size over the eye's.
+ */
+typedef struct {
+  /**
+   * The mapping of pixels, at the vectors' size.
+   */
+  YoroWarp warp;
+  /**
+   * X per unit of the vector's z.
+   */
+  double per_z;
+  /**
+   * X per unit of stored depth.
+   */
+  double per_depth;
+  /**
+   * X that is added.
+   */
+  double constant;
+  /**
+   * The image that the vectors refer to.
+   */
+  YoroVectors vectors;
+  /**
+   * Must be 0.
+   */
+  uint32_t reserved;
+} YoroMotionWarp;
+
+/**
  * Two views of a scene: a rendered one, and one in any pose near it.
  */
 typedef struct {
@@ -1165,6 +1242,10 @@ typedef uint32_t YoroWarpKind;
  * To a view in any pose near the rendered one, with a YoroPoseWarp. If both views are parallel eyes, YORO_WARP_KIND_EYES gives the same image and is faster.
  */
 #define YORO_WARP_KIND_POSE 1
+/**
+ * Motion vectors between two parallel eyes, with a YoroMotionWarp. The colour is RGBA16F, and each texel a vector.
+ */
+#define YORO_WARP_KIND_MOTION 2
 
 /**
  * An entry point of any type.
@@ -1517,6 +1598,23 @@ YoroResult yoro_levels_from_eyes(const YoroEyes *eyes,
                                  YoroComposition *compositions);
 
 /**
+ * Computes how motion vectors of the rendered eye become those of the other eye, and its own without the guard band.
+ *
+ * Call it from any thread, without a context. It allocates and keeps nothing.
+ *
+ * @param motion The two frames.
+ * @param other  Receives the mapping to the other eye.
+ * @param own    Receives the mapping to the rendered eye; NULL if it is not needed, because vectors can be scaled, or
+ *               cropped.
+ * @pre The pointers point to structures of the sizes that they state.
+ * @return YORO_ERROR_VALUE if the frames have no law in common: then tell the runtime not to extrapolate this one. As for
+ *         yoro_views_from_eyes for each pair of eyes.
+ */
+YoroResult yoro_motion_warp(const YoroMotion *motion,
+                            YoroMotionWarp *other,
+                            YoroMotionWarp *own);
+
+/**
  * Computes the mapping of pixels from a rendered view to one in any pose near it.
  *
  * Call it from any thread, without a context. It allocates and keeps nothing.
@@ -1630,6 +1728,20 @@ YoroResult yoro_gl_synthesize(YoroContext *context,
 YoroResult yoro_gl_synthesize_pose(YoroContext *context,
                                    const YoroPoseWarp *warp,
                                    const YoroGlImages *images);
+
+/**
+ * Makes motion vectors of an eye, in a context of YORO_WARP_KIND_MOTION. Otherwise it is like yoro_gl_synthesize. The
+ * colour that is read and the one that is written are vectors in RGBA16F; vectors of two components are not enough.
+ *
+ * @param context The context.
+ * @param warp    The warp of yoro_motion_warp.
+ * @param images  The images to read and where to draw.
+ * @pre As for yoro_gl_synthesize.
+ * @return As for yoro_gl_synthesize.
+ */
+YoroResult yoro_gl_synthesize_motion(YoroContext *context,
+                                     const YoroMotionWarp *warp,
+                                     const YoroGlImages *images);
 
 /**
  * Composes an eye of its levels into a rectangle of its size, and overwrites all of it: the inset where it covers the eye
@@ -2169,6 +2281,23 @@ YoroResult yoro_vk_record_pose(YoroContext *context,
                                VkCommandBuffer commands,
                                const YoroPoseWarp *warp,
                                const YoroVkFrame *frame);
+
+/**
+ * Records motion vectors of an eye, in a context of YORO_WARP_KIND_MOTION: barriers and three draws. Otherwise it is like
+ * yoro_vk_record. Colours are vectors, VK_FORMAT_R16G16B16A16_SFLOAT; images with two components are refused with
+ * YORO_ERROR_FORMAT when they are registered.
+ *
+ * @param context  The context.
+ * @param commands A command buffer of the device.
+ * @param warp     The warp of yoro_motion_warp, with rows ordered as in the images.
+ * @param frame    The images to read and where to draw.
+ * @pre As for yoro_vk_record.
+ * @return As for yoro_vk_record.
+ */
+YoroResult yoro_vk_record_motion(YoroContext *context,
+                                 VkCommandBuffer commands,
+                                 const YoroMotionWarp *warp,
+                                 const YoroVkFrame *frame);
 
 /**
  * Creates views and descriptors for the levels of an eye, in a context that was created with `composes`. Otherwise it is

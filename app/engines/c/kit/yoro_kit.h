@@ -141,6 +141,35 @@ static inline int yoro_kit_views(const YoroKitEyes *eyes, int x, int y, YoroKitV
   return 1;
 }
 
+/* The block of march.frag with the macro MOTION: 128 bytes. The other passes take its first part. */
+typedef struct {
+  YoroKitUniforms uniforms; /* of yoro_kit_views */
+  float motion[4];
+} YoroKitMotionUniforms;
+
+/* NDC x of the other eye is that of the rendered eye, plus place[0], plus place[1] times the depth buffer's value. */
+static inline void yoro_kit_place(const YoroKitEyes *eyes, double place[2]) {
+  const YoroKitFrustum s = eyes->frusta[eyes->rendered != 0], t = eyes->frusta[eyes->rendered == 0];
+  const double half = ((double)s.right - s.left) / 2, shift = (eyes->rendered ? 1.0 : -1.0) * eyes->ipd / half;
+  const double near_inverse = 1.0 / eyes->near_z, far_inverse = isinf(eyes->far_z) ? 0.0 : 1.0 / eyes->far_z;
+  place[0] = ((double)s.left - t.left) / half + shift * (eyes->reversed ? far_inverse : near_inverse);
+  place[1] = shift * (eyes->reversed ? near_inverse - far_inverse : far_inverse - near_inverse);
+}
+
+/*
+ * Fills the rest of the block for motion vectors, whose colour is RGBA16F: the place of a surface minus its place in the
+ * former frame, in normalized device coordinates of the rendered eye itself (not of the wider image), with three
+ * components. `minus_one` is 1 if their z is from -1 to 1 (OpenGL), 0 if from 0 to 1. The eyes' size is that of an eye's
+ * vectors.
+ */
+static inline void yoro_kit_motion(const YoroKitEyes *eyes, const YoroKitEyes *former, int minus_one, float motion[4]) {
+  double now[2], then[2];
+  yoro_kit_place(eyes, now), yoro_kit_place(former, then);
+  motion[0] = (float)(then[1] / (minus_one ? 2.0 : 1.0));
+  motion[1] = (float)(now[1] - then[1]), motion[2] = (float)(now[0] - then[0]);
+  motion[3] = 0;
+}
+
 /* Where an eye is in the world: x to the right, y up, looking along -z. With OpenXR: an XrPosef. */
 typedef struct {
   float orientation[4]; /* quaternion x, y, z, w, of length 1 */

@@ -9,21 +9,24 @@ use std::num::NonZeroU32;
 use std::rc::Rc;
 
 use yoro::opengl::{
-    self, AnyView, Composer, Context, Destination, Gather, GlApi, GlState, Options, Outputs, Part, PassTime,
-    Profiling, Source,
+    self, AnyView, Composer, Context, Destination, Gather, GlApi, GlState, Motion, Options, Outputs, Part,
+    PassTime, Profiling, Source,
 };
-use yoro::synthesis::backend::WarpKind;
+use yoro::synthesis::backend::{Kind, WarpKind};
 
 use crate::context::{
     Backend, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, YoroTimes, create, enter_as,
     write_bytes,
 };
+use crate::motion::{YoroMotionWarp, read_motion_warp};
 use crate::pose::{YoroPoseWarp, read_pose_warp};
 use crate::result::{
     Failure, YORO_ERROR_DRIVER, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YoroMessages,
     YoroResult,
 };
-use crate::types::{YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroOutputFlags, YoroWarpKind, is_pose, other_kind};
+use crate::types::{
+    YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroOutputFlags, YoroWarpKind, other_kind, warp_kind,
+};
 use crate::versioned::{self, versioned};
 use crate::views::{YoroWarp, read_warp};
 
@@ -131,11 +134,11 @@ pub unsafe extern "C" fn yoro_gl_buffer_bytes(
             info,
             bytes,
             |info| info.messages,
-            |info| match is_pose(info.warp_kind)? {
-                true => Err(Failure::value(
+            |info| match warp_kind(info.warp_kind)? {
+                Kind::AnyView => Err(Failure::value(
                     "the buffers for YORO_WARP_KIND_POSE have 16 bytes for each 16 x 8 pixels of the source, and of the target",
                 )),
-                false => Ok(opengl::buffer_bytes(&read_warp(warp)?)),
+                Kind::Gather | Kind::Motion => Ok(opengl::buffer_bytes(&read_warp(warp)?)),
             },
         )
     }
@@ -276,6 +279,33 @@ pub unsafe extern "C" fn yoro_gl_synthesize_pose(
     }
 }
 
+/// Makes motion vectors of an eye, in a context of YORO_WARP_KIND_MOTION. Otherwise it is like yoro_gl_synthesize. The
+/// colour that is read and the one that is written are vectors in RGBA16F; vectors of two components are not enough.
+///
+/// @param context The context.
+/// @param warp    The warp of yoro_motion_warp.
+/// @param images  The images to read and where to draw.
+/// @pre As for yoro_gl_synthesize.
+/// @return As for yoro_gl_synthesize.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_gl_synthesize_motion(
+    context: *mut YoroContext,
+    warp: *const YoroMotionWarp,
+    images: *const YoroGlImages,
+) -> YoroResult {
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
+    unsafe {
+        enter_gl(context, |gl| {
+            gl.passes.motion()?;
+            let warp = gl.fitting(|| read_motion_warp(warp))?;
+            let images = versioned::read(images, "images")?;
+            gl.synthesize(warp.sizes(), &images, |passes, source, target| {
+                Ok(passes.motion()?.synthesize(source, &warp, target)?)
+            })
+        })
+    }
+}
+
 /// # Safety
 /// `context` is null or points to a live context.
 unsafe fn enter_gl(
@@ -305,20 +335,36 @@ pub(crate) struct Gl {
 enum Passes {
     Eyes(Box<Gather>),
     Pose(Box<AnyView>),
+    Motion(Box<Motion>),
 }
 
 impl Passes {
+    fn kind(&self) -> Kind {
+        match self {
+            Passes::Eyes(_) => Kind::Gather,
+            Passes::Pose(_) => Kind::AnyView,
+            Passes::Motion(_) => Kind::Motion,
+        }
+    }
+
     fn eyes(&mut self) -> Result<&mut Gather, Failure> {
         match self {
             Passes::Eyes(gather) => Ok(gather),
-            Passes::Pose(_) => Err(other_kind(true)),
+            other => Err(other_kind(other.kind())),
+        }
+    }
+
+    fn motion(&mut self) -> Result<&mut Motion, Failure> {
+        match self {
+            Passes::Motion(motion) => Ok(motion),
+            other => Err(other_kind(other.kind())),
         }
     }
 
     fn pose(&mut self) -> Result<&mut AnyView, Failure> {
         match self {
             Passes::Pose(any_view) => Ok(any_view),
-            Passes::Eyes(_) => Err(other_kind(false)),
+            other => Err(other_kind(other.kind())),
         }
     }
 }
@@ -336,7 +382,7 @@ impl Gl {
                 )));
             }
         };
-        let (outputs, pose) = (outputs(info.outputs)?, is_pose(info.warp_kind)?);
+        let (outputs, kind) = (outputs(info.outputs)?, warp_kind(info.warp_kind)?);
         for (flag, what) in [(info.check, "check"), (info.timed, "timed"), (info.composes, "composes")] {
             if flag > 1 {
                 return Err(Failure::value(format!("{what} is {flag}: give 0 or 1")));
@@ -359,9 +405,10 @@ impl Gl {
         let has = |bit| info.sources & bit != 0;
         let (parts, array_textures) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
         let options = Options { gl_state, parts, array_textures, depth_pairs: false };
-        let passes = match pose {
-            true => Passes::Pose(Box::new(AnyView::new(&context, &options, outputs)?)),
-            false => Passes::Eyes(Box::new(Gather::new(&context, &options, outputs)?)),
+        let passes = match kind {
+            Kind::AnyView => Passes::Pose(Box::new(AnyView::new(&context, &options, outputs)?)),
+            Kind::Gather => Passes::Eyes(Box::new(Gather::new(&context, &options, outputs)?)),
+            Kind::Motion => Passes::Motion(Box::new(Motion::new(&context, &options, outputs)?)),
         };
         let composes = info.composes == 1;
         let composer = composes.then(|| Composer::new(&context, gl_state, outputs.srgb)).transpose()?;

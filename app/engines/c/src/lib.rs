@@ -24,6 +24,7 @@ mod context;
 
 mod choice;
 mod levels;
+mod motion;
 mod pose;
 
 mod gl;
@@ -39,6 +40,7 @@ pub use eyes::*;
 pub use gl::*;
 pub use levels::*;
 pub use matrices::*;
+pub use motion::*;
 pub use pose::*;
 pub use result::*;
 pub use types::*;

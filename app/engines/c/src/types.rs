@@ -1,6 +1,7 @@
 //! Versions, and the small types that the structures consist of.
 
 use yoro::eyes::{DepthConvention, Eye};
+use yoro::synthesis::backend::Kind;
 
 use crate::result::Failure;
 
@@ -61,20 +62,27 @@ pub const YORO_WARP_KIND_EYES: YoroWarpKind = 0;
 /// To a view in any pose near the rendered one, with a YoroPoseWarp. If both views are parallel eyes, YORO_WARP_KIND_EYES gives the same image and is faster.
 pub const YORO_WARP_KIND_POSE: YoroWarpKind = 1;
 
-/// True for YORO_WARP_KIND_POSE.
-pub(crate) fn is_pose(kind: YoroWarpKind) -> Result<bool, Failure> {
+/// Motion vectors between two parallel eyes, with a YoroMotionWarp. The colour is RGBA16F, and each texel a vector.
+pub const YORO_WARP_KIND_MOTION: YoroWarpKind = 2;
+
+/// Returns the kind of a constant.
+pub(crate) fn warp_kind(kind: YoroWarpKind) -> Result<Kind, Failure> {
     match kind {
-        YORO_WARP_KIND_EYES => Ok(false),
-        YORO_WARP_KIND_POSE => Ok(true),
+        YORO_WARP_KIND_EYES => Ok(Kind::Gather),
+        YORO_WARP_KIND_POSE => Ok(Kind::AnyView),
+        YORO_WARP_KIND_MOTION => Ok(Kind::Motion),
         other => Err(Failure::value(format!("{other} is no kind of warp: give a YORO_WARP_KIND_ constant"))),
     }
 }
 
 /// Returns the error for a warp of a kind that the context was not created for.
-pub(crate) fn other_kind(made_for_pose: bool) -> Failure {
-    Failure::value(match made_for_pose {
-        true => "the context was made for YORO_WARP_KIND_POSE: call the function that ends in _pose",
-        false => "the context was made for YORO_WARP_KIND_EYES: create one with the other warp_kind",
+pub(crate) fn other_kind(made_for: Kind) -> Failure {
+    Failure::value(match made_for {
+        Kind::AnyView => "the context was made for YORO_WARP_KIND_POSE: call the function that ends in _pose",
+        Kind::Motion => {
+            "the context was made for YORO_WARP_KIND_MOTION: call the function that ends in _motion"
+        }
+        Kind::Gather => "the context was made for YORO_WARP_KIND_EYES: create one with the other warp_kind",
     })
 }
 

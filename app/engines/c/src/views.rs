@@ -84,7 +84,7 @@ pub struct YoroViews {
 versioned!(YoroViews);
 
 impl YoroWarp {
-    fn new(warp: &Warp) -> YoroWarp {
+    pub(crate) fn new(warp: &Warp) -> YoroWarp {
         YoroWarp {
             source_width: warp.source_size[0],
             source_height: warp.source_size[1],
@@ -103,7 +103,7 @@ impl YoroWarp {
     }
 
     /// Returns the core's warp. Checks the numbers, since programs may have made them up.
-    fn checked(&self) -> Result<Warp, Failure> {
+    pub(crate) fn checked(&self) -> Result<Warp, Failure> {
         /// The largest width and height. No driver renders larger images.
         const MAX_SIDE: u32 = 1 << 16;
         let sides = [self.source_width, self.source_height, self.target_width, self.target_height];
@@ -176,6 +176,11 @@ fn mirrored(frustum: Frustum) -> Frustum {
     Frustum { bottom: -frustum.top, top: -frustum.bottom, ..frustum }
 }
 
+/// Returns the eyes whose rows from the bottom are those of images with row 0 at the top, if `down` is true.
+pub(crate) fn turned(pair: EyePair, down: bool) -> EyePair {
+    if down { EyePair { frusta: pair.frusta.map(mirrored), ..pair } } else { pair }
+}
+
 /// Returns the views of a pair, without matrices. `down` is true if row 0 is at the top.
 pub(crate) fn views(pair: EyePair, guard: GuardBand, down: bool) -> Result<YoroViews, Failure> {
     views_by(pair, down, |pair| pair.synthesis_views(guard))
@@ -183,13 +188,11 @@ pub(crate) fn views(pair: EyePair, guard: GuardBand, down: bool) -> Result<YoroV
 
 /// Returns the views of a pair that `find` finds, without matrices.
 pub(crate) fn views_by(
-    mut pair: EyePair,
+    pair: EyePair,
     down: bool,
     find: impl FnOnce(&EyePair) -> Result<SynthesisViews, EyesError>,
 ) -> Result<YoroViews, Failure> {
-    if down {
-        pair.frusta = pair.frusta.map(mirrored);
-    }
+    let pair = turned(pair, down);
     let views = find(&pair)?;
     Ok(YoroViews {
         struct_size: size_of::<YoroViews>() as u32,

@@ -9,6 +9,7 @@ use yoro::vulkan::ash::vk;
 use yoro::vulkan::{Frame, Pipeline, SourceId, SourceImages, TargetId, TargetImages, Uses};
 
 use crate::context::{YoroContext, create, enter_as, write_bytes};
+use crate::motion::{YoroMotionWarp, read_motion_warp};
 use crate::pose::{YoroPoseWarp, read_pose_warp};
 use crate::result::{Failure, YORO_ERROR_NULL, YoroResult};
 use crate::types::other_kind;
@@ -180,7 +181,7 @@ pub unsafe extern "C" fn yoro_vk_record(
             let (frame, uses) = vulkan.frame(frame)?;
             match &mut vulkan.passes {
                 Passes::Eyes(gather) => record(gather, commands, &frame, &warp, uses.as_ref()),
-                Passes::Pose(_) => Err(other_kind(true)),
+                other => Err(other_kind(other.kind())),
             }
         })
     }
@@ -211,7 +212,40 @@ pub unsafe extern "C" fn yoro_vk_record_pose(
             let (frame, uses) = vulkan.frame(frame)?;
             match &mut vulkan.passes {
                 Passes::Pose(any_view) => record(any_view, commands, &frame, &warp, uses.as_ref()),
-                Passes::Eyes(_) => Err(other_kind(false)),
+                other => Err(other_kind(other.kind())),
+            }
+        })
+    }
+}
+
+/// Records motion vectors of an eye, in a context of YORO_WARP_KIND_MOTION: barriers and three draws. Otherwise it is like
+/// yoro_vk_record. Colours are vectors, VK_FORMAT_R16G16B16A16_SFLOAT; images with two components are refused with
+/// YORO_ERROR_FORMAT when they are registered.
+///
+/// @param context  The context.
+/// @param commands A command buffer of the device.
+/// @param warp     The warp of yoro_motion_warp, with rows ordered as in the images.
+/// @param frame    The images to read and where to draw.
+/// @pre As for yoro_vk_record.
+/// @return As for yoro_vk_record.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_vk_record_motion(
+    context: *mut YoroContext,
+    commands: vk::CommandBuffer,
+    warp: *const YoroMotionWarp,
+    frame: *const YoroVkFrame,
+) -> YoroResult {
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
+    unsafe {
+        enter_vulkan(context, |vulkan| {
+            check_commands(commands)?;
+            let mut warp = read_motion_warp(warp)?;
+            // As above.
+            warp.warp = warp.warp.rows_from_top();
+            let (frame, uses) = vulkan.frame(frame)?;
+            match &mut vulkan.passes {
+                Passes::Motion(motion) => record(motion, commands, &frame, &warp, uses.as_ref()),
+                other => Err(other_kind(other.kind())),
             }
         })
     }

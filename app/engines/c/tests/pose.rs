@@ -202,7 +202,7 @@ fn the_picture_on_opengl_is_the_cores() {
     let source = view([0.0, 1.6, 0.0], [0.0; 3], [140, 100]);
     let target = view([0.03, 1.62, -0.1], [0.03, 0.02, 0.05], SIZE);
     let warp = warp_of(&poses(&source, &target, YORO_ROWS_UP)).unwrap();
-    assert_eq!(create(&YoroGlInfo { warp_kind: 2, ..info }), Err(YORO_ERROR_VALUE));
+    assert_eq!(create(&YoroGlInfo { warp_kind: 3, ..info }), Err(YORO_ERROR_VALUE));
     let context = create(&info).unwrap();
     // SAFETY: complete structures, a live, current context, and checks are on.
     unsafe {

@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use yoro::eyes::{
-    DepthConvention, DepthRange, Eye, EyePair, Foveation, Frustum, Gaze, GuardBand, Pose, PoseWarp, View,
+    DepthConvention, DepthRange, Eye, EyePair, Foveation, Frustum, Gaze, GuardBand, Ndc, Pose, PoseWarp,
+    VectorSpace, VectorsOf, View,
 };
 use yoro::synthesis::backend::Places;
 use yoro::synthesis::{LevelPlaces, LevelUniforms, PoseUniforms};
@@ -249,6 +250,10 @@ fn the_package_is_used_as_its_first_page_says() {
     assert_eq!(synthesized.len(), commands.matches(" && ./").count(), "{printed}");
     assert!(synthesized.iter().all(|&psnr| psnr > 30.0), "{printed}");
     assert!(work.path().join("build/gles").is_file(), "{printed}");
+    let notices = std::fs::read_to_string(work.path().join("share/doc/yoro/NOTICES.txt")).unwrap();
+    for name in ["\n  ash ", "\n  glam ", "\n  glow "] {
+        assert!(notices.contains(name), "{name}: {notices}");
+    }
     let size = work.path().join("lib/libyoro.so").metadata().unwrap().len();
     assert!(size < 1_050_000, "{size} bytes");
 }
@@ -322,6 +327,7 @@ fn the_kits_shaders_for_vulkan_compile() {
         ("tiles.frag", &settings[..1]),
         ("spans.frag", &settings[..1]),
         ("march.frag", &settings[..]),
+        ("march.frag", &[&["-DMOTION"], &["-DMOTION", "-DWRITE_DEPTH"]]),
         ("any_view_tiles.frag", &settings[..1]),
         ("any_view_spans.frag", &settings[..1]),
         ("any_view_march.frag", &settings[..]),
@@ -398,6 +404,40 @@ fn the_kit_and_the_core_find_the_same_place_of_any_view() {
                 }
             }
         }
+    }
+}
+
+/// The kit's law of motion vectors is the core's, for both eyes, with frusta, planes and distance that change.
+#[test]
+fn the_kit_and_the_core_have_one_law_of_motion() {
+    const TEXT: &str = "#include \"yoro_kit.h\"
+        #include <stdio.h>
+        int main(void) {
+          for (int i = 0; i < 2; ++i) {
+            YoroKitEyes now = {{{-1.2f, 0.9f, 1.0f, -1.1f}, {-0.9f, 1.2f, 1.0f, -1.1f}}, 0.063f, 0.1f, 50, i, i, 300, 280, 1.0f, i};
+            YoroKitEyes then = {{{-1.1f, 1.0f, 1.0f, -1.1f}, {-0.8f, 1.3f, 1.0f, -1.1f}}, 0.06f, 0.2f, 60, i, i, 300, 280, 1.0f, i};
+            float motion[4];
+            yoro_kit_motion(&now, &then, i, motion);
+            for (int k = 0; k < 4; ++k) printf(\"%.9g\\n\", motion[k]);
+          }
+          return sizeof(YoroKitMotionUniforms) != 128;
+        }";
+    let Some(printed) = of_kit(TEXT, &[]) else { return };
+    let numbers: Vec<f64> = printed.lines().map(|line| line.parse().unwrap()).collect();
+    for (i, got) in numbers.chunks(4).enumerate() {
+        let views = |shift: f32, ipd: f32, near: f32, far: f32| {
+            let frustum = |left: f32| Frustum { left, right: left + 2.1, bottom: -1.1, top: 1.0 };
+            let convention = [DepthConvention::Standard, DepthConvention::Reversed][i];
+            let depth = DepthRange { near, far, convention };
+            let dominant = [Eye::Left, Eye::Right][i];
+            let mut pair = EyePair::parallel(Pose::IDENTITY, frustum(0.0), ipd, depth, [300, 280], dominant);
+            pair.frusta = [frustum(-1.2 + shift), frustum(-0.9 + shift)];
+            pair.synthesis_views(GuardBand::Distance(1.0)).unwrap()
+        };
+        let space = VectorSpace { ndc: [Ndc::ZeroToOne, Ndc::MinusOneToOne][i], of: VectorsOf::Eye };
+        let law = views(0.0, 0.063, 0.1, 50.0).motion(&views(0.1, 0.06, 0.2, 60.0), space).unwrap().law;
+        let want = [law.per_z, law.per_depth, law.constant, 0.0];
+        assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() < 1e-5), "{got:?}, {want:?}");
     }
 }
 

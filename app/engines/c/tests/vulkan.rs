@@ -276,7 +276,7 @@ fn uses_memory_and_times_are_those_of_the_core() {
 fn a_context_of_any_pose_records_pose_warps() {
     let Some(gpu) = Gpu::open() else { return };
     let info = YoroVkInfo { warp_kind: YORO_WARP_KIND_POSE, ..gpu.info() };
-    assert_eq!(create(&YoroVkInfo { warp_kind: 2, ..info }), Err(YORO_ERROR_VALUE));
+    assert_eq!(create(&YoroVkInfo { warp_kind: 3, ..info }), Err(YORO_ERROR_VALUE));
     // Both views have the same orientation; the target is a little to the right.
     let warp = YoroPoseWarp {
         source_width: 200,

@@ -20,6 +20,8 @@ pub struct Mesh {
     index_count: usize,
     vertex_count: usize,
     vertex_bytes: u32,
+    /// The first location that no attribute has.
+    free_location: u32,
 }
 
 impl Mesh {
@@ -80,6 +82,7 @@ impl Mesh {
                 index_count: indices.len(),
                 vertex_count: vertices.len(),
                 vertex_bytes: stride as u32,
+                free_location: attributes.len() as u32,
             };
             for copy in 0..copies {
                 let array = raw.create_vertex_array().map_err(|e| object("a vertex array", e))?;
@@ -137,6 +140,22 @@ impl Mesh {
     pub fn bind(&self) {
         // SAFETY: the vertex array lives as long as the mesh.
         unsafe { self.gl.raw().bind_vertex_array(Some(self.copies[self.current].0)) }
+    }
+
+    /// Binds the vertex array as [`Mesh::bind`] does, with one more attribute at the location after the last one: the first
+    /// three floats of each vertex before the last [`Mesh::rewrite`], or its present ones if it has not `moved`.
+    pub fn bind_with_former(&self, moved: bool) {
+        self.bind();
+        let back = if moved { self.copies.len() - 1 } else { 0 };
+        let former = self.copies[(self.current + back) % self.copies.len()].1;
+        let gl = self.gl.raw();
+        // SAFETY: the buffer lives as long as the vertex array, and its vertices begin with three floats or are longer.
+        unsafe {
+            gl.bind_buffer(glow::ARRAY_BUFFER, Some(former));
+            gl.enable_vertex_attrib_array(self.free_location);
+            let stride = self.vertex_bytes as i32;
+            gl.vertex_attrib_pointer_f32(self.free_location, 3, glow::FLOAT, false, stride, 0);
+        }
     }
 
     /// Draws all indices as one triangle strip. The mesh must be bound.

@@ -37,8 +37,28 @@ pub struct Instance {
     pub serves: bool,
     /// True if the runtime accepts depth: it has the extension, and the application has enabled it.
     pub takes_depth: bool,
-    /// The recommended size of the one view of each system, in pixels. It never changes once it has been returned.
-    sizes: Mutex<Vec<(sys::SystemId, [u32; 2])>>,
+    /// The recommended sizes of the rendered views of each system, in pixels. They never change once they have been
+    /// returned.
+    sizes: Mutex<Vec<RecommendedSize>>,
+}
+
+/// A rendered view of a system, and its recommended size in pixels.
+type RecommendedSize = ((sys::SystemId, Part), [u32; 2]);
+
+/// What a rendered view stands for in both eyes: all that they see, or, of four views, the wide ones or the insets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The two views of PRIMARY_STEREO.
+    Eyes,
+    /// The first two of PRIMARY_STEREO_WITH_FOVEATED_INSET.
+    Wide,
+    /// The last two of it.
+    Inset,
+}
+
+impl Part {
+    /// The parts of four views, in the order of the views.
+    pub const OF_FOUR: [Part; 2] = [Part::Wide, Part::Inset];
 }
 
 impl Instance {
@@ -99,12 +119,23 @@ impl Instance {
         Ok(list)
     }
 
-    /// Returns the runtime's two views, and fills in the structures that are chained to each.
-    pub fn own_views(
+    /// True if the runtime has four views, and all but two of them are made tiny.
+    pub fn shrinks_four(&self, system: sys::SystemId) -> bool {
+        self.settings.shrink
+            && self.serves
+            && self
+                .own_configurations(system)
+                .is_ok_and(|own| own.contains(&Views::PRIMARY_STEREO_WITH_FOVEATED_INSET))
+    }
+
+    /// Returns the runtime's views of a configuration with this many, and fills in the structures that are chained to
+    /// each.
+    pub fn own_views<const N: usize>(
         &self,
         system: sys::SystemId,
-        chains: [*mut c_void; 2],
-    ) -> XrResult<[sys::ViewConfigurationView; 2]> {
+        kind: Views,
+        chains: [*mut c_void; N],
+    ) -> XrResult<[sys::ViewConfigurationView; N]> {
         let mut views = chains.map(|next| sys::ViewConfigurationView {
             ty: sys::ViewConfigurationView::TYPE,
             next,
@@ -116,13 +147,13 @@ impl Instance {
             max_swapchain_sample_count: 0,
         });
         let mut count = 0;
-        // SAFETY: a live instance, and room for two views.
+        // SAFETY: a live instance, and room for these views.
         check(unsafe {
             (self.next.enumerate_view_configuration_views)(
                 self.handle,
                 system,
-                Views::PRIMARY_STEREO,
-                2,
+                kind,
+                N as u32,
                 &mut count,
                 views.as_mut_ptr(),
             )
@@ -134,16 +165,21 @@ impl Instance {
     pub fn view(&self, system: sys::SystemId, chain: *mut c_void) -> XrResult<sys::ViewConfigurationView> {
         let mut chains = [ptr::null_mut(); 2];
         chains[self.settings.dominant.index()] = chain;
-        let own = self.own_views(system, chains)?[self.settings.dominant.index()];
-        Ok(self.enlarged(system, own))
+        let own = self.own_views(system, Views::PRIMARY_STEREO, chains)?[self.settings.dominant.index()];
+        Ok(self.enlarged(system, Part::Eyes, own))
     }
 
-    fn enlarged(&self, system: sys::SystemId, own: sys::ViewConfigurationView) -> sys::ViewConfigurationView {
+    fn enlarged(
+        &self,
+        system: sys::SystemId,
+        part: Part,
+        own: sys::ViewConfigurationView,
+    ) -> sys::ViewConfigurationView {
         let eye = [own.recommended_image_rect_width, own.recommended_image_rect_height];
-        let size = self.told_size(system).unwrap_or_else(|| {
-            let known = self.circumstances(system).and_then(|key| sizes::recall(&key, eye));
+        let size = self.told_size(system, part).unwrap_or_else(|| {
+            let known = self.circumstances(system, part).and_then(|key| sizes::recall(&key, eye));
             let size = known.unwrap_or([(eye[0] as f32 * ESTIMATED_WIDTH).ceil() as u32, eye[1]]);
-            self.latch_size(system, size)
+            self.latch_size(system, part, size)
         });
         sys::ViewConfigurationView {
             recommended_image_rect_width: size[0].min(own.max_image_rect_width),
@@ -152,47 +188,53 @@ impl Instance {
         }
     }
 
-    /// Returns two views, one of which is tiny.
-    pub fn shrunk_views(
+    /// Returns the views of a configuration, of which those of the non-dominant eye are tiny. `parts` are what the views
+    /// of each eye stand for, in their order.
+    pub fn shrunk_views<const N: usize>(
         &self,
         system: sys::SystemId,
-        chains: [*mut c_void; 2],
-    ) -> XrResult<[sys::ViewConfigurationView; 2]> {
-        let own = self.own_views(system, chains)?;
+        kind: Views,
+        parts: &[Part],
+        chains: [*mut c_void; N],
+    ) -> XrResult<[sys::ViewConfigurationView; N]> {
+        let own = self.own_views(system, kind, chains)?;
         let mut views = own.map(|own| sys::ViewConfigurationView {
             recommended_image_rect_width: TINY.min(own.max_image_rect_width),
             recommended_image_rect_height: TINY.min(own.max_image_rect_height),
             ..own
         });
         let dominant = self.settings.dominant.index();
-        views[dominant] = self.enlarged(system, own[dominant]);
+        for (i, part) in parts.iter().enumerate() {
+            let view = 2 * i + dominant;
+            views[view] = self.enlarged(system, *part, own[view]);
+        }
         Ok(views)
     }
 
-    fn told_size(&self, system: sys::SystemId) -> Option<[u32; 2]> {
-        lock(&self.sizes).iter().find(|(known, _)| *known == system).map(|(_, size)| *size)
+    fn told_size(&self, system: sys::SystemId, part: Part) -> Option<[u32; 2]> {
+        lock(&self.sizes).iter().find(|(known, _)| *known == (system, part)).map(|(_, size)| *size)
     }
 
-    /// Sets the size of a system's one view, unless it is already set: a runtime must always return the same sizes.
+    /// Sets the size of a system's rendered view, unless it is already set: a runtime must always return the same sizes.
     /// Returns the size in force.
-    pub fn latch_size(&self, system: sys::SystemId, size: [u32; 2]) -> [u32; 2] {
+    pub fn latch_size(&self, system: sys::SystemId, part: Part, size: [u32; 2]) -> [u32; 2] {
         let mut sizes = lock(&self.sizes);
-        if let Some((_, told)) = sizes.iter().find(|(known, _)| *known == system) {
+        if let Some((_, told)) = sizes.iter().find(|(known, _)| *known == (system, part)) {
             return *told;
         }
-        sizes.push((system, size));
+        sizes.push(((system, part), size));
         size
     }
 
-    /// Remembers the size of the one view, with that of an eye, for the next start.
-    pub fn remember_size(&self, system: sys::SystemId, eye: [u32; 2], size: [u32; 2]) {
-        if let Some(key) = self.circumstances(system) {
+    /// Remembers the size of a rendered view, with that of an eye's, for the next start.
+    pub fn remember_size(&self, system: sys::SystemId, part: Part, eye: [u32; 2], size: [u32; 2]) {
+        if let Some(key) = self.circumstances(system, part) {
             sizes::remember(&key, eye, size);
         }
     }
 
     /// Returns everything that the frusta of the eyes and of the offered view depend on: runtime, headset and settings.
-    fn circumstances(&self, system: sys::SystemId) -> Option<String> {
+    fn circumstances(&self, system: sys::SystemId, part: Part) -> Option<String> {
         // SAFETY: plain data, for which zeros are valid; a live instance, and structures with their types set.
         let (runtime, headset) = unsafe {
             let mut runtime =
@@ -204,6 +246,11 @@ impl Instance {
         };
         let (runtime, headset) = (text(&runtime.runtime_name), text(&headset.system_name));
         let Settings { dominant, guard_band, .. } = &self.settings;
-        Some(format!("{runtime}, {headset}, {} eye, guard band {guard_band}", dominant.name()))
+        let part = match part {
+            Part::Eyes => "",
+            Part::Wide => ", wide",
+            Part::Inset => ", inset",
+        };
+        Some(format!("{runtime}, {headset}, {} eye, guard band {guard_band}{part}", dominant.name()))
     }
 }

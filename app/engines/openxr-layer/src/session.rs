@@ -7,13 +7,13 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use openxr_sys as sys;
-use sys::Handle as _;
+use sys::{Handle as _, ViewConfigurationType as Views};
 use yoro::eyes::{EyesError, Frustum, Pose};
 
 use crate::binding::Binding;
 use crate::dispatch::{XrResult, check};
 use crate::geometry::{IDENTITY, Offer, frustum, pose};
-use crate::instance::Instance;
+use crate::instance::{Instance, Part};
 use crate::{lock, sizes};
 
 /// The value of `Session::views` (the field) before the session begins.
@@ -28,14 +28,14 @@ pub struct Session {
     /// True if PRIMARY_MONO is implemented by the layer, because the runtime shows two views on this system.
     pub offers_mono: bool,
     system: sys::SystemId,
-    /// The size in pixels that the runtime recommends for the dominant eye.
-    eye_size: [u32; 2],
+    /// The sizes in pixels that the runtime recommends for the dominant eye's views, by [`Part`].
+    eye_sizes: [[u32; 2]; 3],
     /// The value of [`Session::views`], or [`NOT_BEGUN`].
     views: AtomicUsize,
-    /// True if the size of the offered view is remembered for the next start.
-    remembered: AtomicBool,
-    /// The last offer, or the reason why nothing can be offered.
-    pub offer: Mutex<Option<Result<Offer, EyesError>>>,
+    /// True if the size of the offered view is remembered for the next start, by [`Part`].
+    remembered: [AtomicBool; 3],
+    /// The last offers by [`Part`], or the reasons why nothing can be offered.
+    offers: Mutex<[Option<Result<Offer, EyesError>>; 3]>,
     /// When the last xrBeginFrame returned.
     pub begun: Mutex<Option<Instant>>,
 }
@@ -48,30 +48,45 @@ impl Session {
         system: sys::SystemId,
     ) -> Session {
         let offers_mono = instance.may_offer(system);
-        let eye = if offers_mono { instance.own_views(system, [ptr::null_mut(); 2]).ok() } else { None };
-        let eye_size = eye.map(|views| views[instance.settings.dominant.index()]).map_or([1; 2], |eye| {
+        let shrinks_four = instance.shrinks_four(system);
+        let dominant = instance.settings.dominant.index();
+        let size = |eye: &sys::ViewConfigurationView| {
             [eye.recommended_image_rect_width.max(1), eye.recommended_image_rect_height.max(1)]
-        });
+        };
+        let mut eye_sizes = [[1; 2]; 3];
+        if offers_mono
+            && let Ok(views) = instance.own_views(system, Views::PRIMARY_STEREO, [ptr::null_mut(); 2])
+        {
+            eye_sizes[Part::Eyes as usize] = size(&views[dominant]);
+        }
+        let four = Views::PRIMARY_STEREO_WITH_FOVEATED_INSET;
+        if shrinks_four && let Ok(views) = instance.own_views(system, four, [ptr::null_mut(); 4]) {
+            eye_sizes[Part::Wide as usize] = size(&views[dominant]);
+            eye_sizes[Part::Inset as usize] = size(&views[2 + dominant]);
+        }
         let session = Session {
             handle,
             offers_mono,
             instance,
             system,
             binding,
-            eye_size,
+            eye_sizes,
             views: AtomicUsize::new(NOT_BEGUN),
-            remembered: AtomicBool::new(false),
-            offer: Mutex::default(),
+            remembered: Default::default(),
+            offers: Mutex::default(),
             begun: Mutex::default(),
         };
-        if offers_mono && let Some(size) = session.size_before_the_first_frame() {
-            session.instance.latch_size(system, size);
+        if offers_mono {
+            session.latch_before_the_first_frame::<2>(Views::PRIMARY_STEREO, &[Part::Eyes]);
+        }
+        if shrinks_four {
+            session.latch_before_the_first_frame::<4>(four, &Part::OF_FOUR);
         }
         session
     }
 
-    /// Returns the size of the offered view, if the runtime locates views before the session begins.
-    fn size_before_the_first_frame(&self) -> Option<[u32; 2]> {
+    /// Sets the sizes of the rendered views, if the runtime locates views before the session begins.
+    fn latch_before_the_first_frame<const N: usize>(&self, kind: Views, parts: &[Part]) -> Option<()> {
         let info = sys::ReferenceSpaceCreateInfo {
             ty: sys::ReferenceSpaceCreateInfo::TYPE,
             next: ptr::null(),
@@ -85,7 +100,7 @@ impl Session {
         let info = sys::ViewLocateInfo {
             ty: sys::ViewLocateInfo::TYPE,
             next: ptr::null(),
-            view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
+            view_configuration_type: kind,
             // Any time is valid for the VIEW space, and the present time would need an extension.
             display_time: self.instance.settings.time(sys::Time::from_nanos(1)),
             space,
@@ -95,63 +110,89 @@ impl Session {
             next: ptr::null_mut(),
             view_state_flags: sys::ViewStateFlags::EMPTY,
         };
-        let located = self.locate(&info, &mut state, ptr::null_mut());
+        let located = self.locate::<N>(&info, &mut state, ptr::null_mut());
         // SAFETY: made above, and no longer used.
         unsafe { (next.destroy_space)(space) };
         // Poses may be invalid before tracking begins, but fields of view are valid.
-        self.offer_for(&located.ok()?).ok().map(|offer| offer.size)
+        let located = located.ok()?;
+        for (views, part) in located.chunks_exact(2).zip(parts) {
+            if let Ok(offer) = self.offer_for(*part, &[views[0], views[1]]) {
+                self.instance.latch_size(self.system, *part, offer.size);
+            }
+        }
+        Some(())
     }
 
-    /// Locates the runtime's two views. `chain` is chained to the dominant eye's.
+    /// Locates the runtime's views of the configuration that `info` names, which has this many. `chain` is chained to the
+    /// dominant eye's.
     ///
     /// # Errors
     /// The result of xrLocateViews.
-    pub fn locate(
+    pub fn locate<const N: usize>(
         &self,
         info: &sys::ViewLocateInfo,
         state: &mut sys::ViewState,
         chain: *mut c_void,
-    ) -> XrResult<[sys::View; 2]> {
-        let info = sys::ViewLocateInfo {
-            view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
-            ..*info
-        };
+    ) -> XrResult<[sys::View; N]> {
         let fov = sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 };
         let view = sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov };
-        let mut views = [view; 2];
+        let mut views = [view; N];
         views[self.instance.settings.dominant.index()].next = chain;
         let mut count = 0;
-        // SAFETY: a live session, and room for two views.
+        // SAFETY: a live session, and room for these views.
         check(unsafe {
-            (self.instance.next.locate_views)(self.handle, &info, state, 2, &mut count, views.as_mut_ptr())
+            let locate = self.instance.next.locate_views;
+            locate(self.handle, info, state, N as u32, &mut count, views.as_mut_ptr())
         })?;
         Ok(views)
     }
 
-    fn offer_for(&self, views: &[sys::View; 2]) -> Result<Offer, EyesError> {
+    fn offer_for(&self, part: Part, views: &[sys::View; 2]) -> Result<Offer, EyesError> {
         let settings = &self.instance.settings;
         let views = views.map(|view| (pose(view.pose), frustum(view.fov)));
-        Offer::new(views, self.eye_size, settings.dominant, settings.guard_band)
+        Offer::new(views, self.eye_sizes[part as usize], settings.dominant, settings.guard_band)
     }
 
     /// Returns the view that the application gets instead of the runtime's two, and remembers the offer. If nothing can
     /// be synthesized between them, it is the dominant eye's own view.
     pub fn offer(&self, views: &[sys::View; 2]) -> (Pose, Frustum) {
-        let offer = self.offer_for(views);
-        *lock(&self.offer) = Some(offer);
-        if let Ok(offer) = offer
-            && !self.remembered.swap(true, Ordering::Relaxed)
-        {
-            self.instance.remember_size(self.system, self.eye_size, offer.size);
+        let own = &views[self.instance.settings.dominant.index()];
+        self.remember(Part::Eyes, self.offer_for(Part::Eyes, views))
+            .unwrap_or((pose(own.pose), frustum(own.fov)))
+    }
+
+    /// Returns the wide view and the inset that the application gets instead of the runtime's four views, and remembers
+    /// the offers. `None` if nothing can be synthesized between one of the pairs: the pose of both views must be the
+    /// same, so neither is changed then.
+    pub fn offer_two_of_four(&self, views: &[sys::View; 4]) -> Option<[(Pose, Frustum); 2]> {
+        let [left, right, left_inset, right_inset] = *views;
+        let wide = self.offer_for(Part::Wide, &[left, right]);
+        let inset = self.offer_for(Part::Inset, &[left_inset, right_inset]);
+        let failed = wide.err().or(inset.err());
+        let of = |offer| failed.map_or(offer, Err);
+        self.remember(Part::Wide, of(wide)).zip(self.remember(Part::Inset, of(inset))).map(|(a, b)| [a, b])
+    }
+
+    fn remember(&self, part: Part, offer: Result<Offer, EyesError>) -> Option<(Pose, Frustum)> {
+        lock(&self.offers)[part as usize] = Some(offer);
+        let offer = offer.ok()?;
+        if !self.remembered[part as usize].swap(true, Ordering::Relaxed) {
+            let eye = self.eye_sizes[part as usize];
+            self.instance.remember_size(self.system, part, eye, offer.size);
         }
-        let own = views[self.instance.settings.dominant.index()];
-        offer.map_or((pose(own.pose), frustum(own.fov)), |offer| (offer.pose, offer.frustum))
+        Some((offer.pose, offer.frustum))
+    }
+
+    /// Returns the last offer of a part, or the reason why nothing can be offered; `None` before views were located.
+    pub fn last_offer(&self, part: Part) -> Option<Result<Offer, EyesError>> {
+        lock(&self.offers)[part as usize]
     }
 
     /// Returns the size in pixels of the offered view for an eye of this size.
     pub fn enlarged(&self, size: [u32; 2]) -> [u32; 2] {
-        let offered = lock(&self.offer).and_then(Result::ok).map_or(self.eye_size, |offer| offer.size);
-        sizes::scaled(size, self.eye_size, offered)
+        let own = self.eye_sizes[Part::Eyes as usize];
+        let offered = self.last_offer(Part::Eyes).and_then(Result::ok).map_or(own, |offer| offer.size);
+        sizes::scaled(size, own, offered)
     }
 
     /// Begins the session. See [`Session::views`] for `views`.
@@ -159,8 +200,8 @@ impl Session {
         self.views.store(views, Ordering::Relaxed);
     }
 
-    /// Returns the number of views in the projection layers that are rewritten: 1, or 2 if one of them is tiny. It is 0
-    /// if everything is passed through, and before the session begins.
+    /// Returns the number of views in the projection layers that are rewritten: 1, or 2 or 4 if half of them are tiny. It
+    /// is 0 if everything is passed through, and before the session begins.
     pub fn views(&self) -> usize {
         Some(self.views.load(Ordering::Relaxed)).filter(|views| *views != NOT_BEGUN).unwrap_or(0)
     }
@@ -170,9 +211,14 @@ impl Session {
         self.offers_mono && [NOT_BEGUN, 1].contains(&self.views.load(Ordering::Relaxed))
     }
 
-    /// True if, should the application begin with two views, one is made tiny and replaced.
+    /// True if, should the application begin with two or four views, those of one eye are made tiny and replaced.
     pub fn shrinks(&self) -> bool {
         self.binding.is_some() && self.instance.settings.shrink
+    }
+
+    /// Returns what the rewritten views of each eye stand for, in their order.
+    pub fn parts(&self) -> &'static [Part] {
+        if self.views() == 4 { &Part::OF_FOUR } else { &[Part::Eyes] }
     }
 
     /// True if the application's images are read at the end of a frame.

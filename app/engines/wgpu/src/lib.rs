@@ -3,7 +3,8 @@
 //! [`Gather`] takes colour and depth of one eye as texture views, and draws the other eye. It is the counterpart of
 //! `yoro::vulkan`, and uses the same shaders. [`yoro::eyes`] computes which view to render, and the
 //! [`Warp`](yoro::eyes::Warp). [`AnyView`] is used in the same way, with a [`PoseWarp`](yoro::eyes::PoseWarp), and
-//! draws a view in any pose near that of the source. [`Composer`] makes an eye from the levels of a foveated view. wgpu is part of the public API, and is re-exported as [`wgpu`].
+//! draws a view in any pose near that of the source. [`Motion`] makes the other eye's motion vectors,
+//! [`Composer`] an eye from the levels of a foveated view. wgpu is part of the public API, and is re-exported as [`wgpu`].
 //!
 //! Images have wgpu's own orientation, with row 0 at the top. Pass the warp as
 //! [`EyePair::synthesis_views`](yoro::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the
@@ -47,7 +48,7 @@ use yoro::synthesis::ArgumentError;
 
 pub use composer::{Composer, InsetImage, LevelImage, LevelImages};
 pub use nearest::NearestDepth;
-pub use pipeline::{AnyView, Gather, Pipeline};
+pub use pipeline::{AnyView, Gather, Motion, Pipeline};
 
 /// The errors of creating a pipeline and of recording.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -1,8 +1,9 @@
 //! Synthesis, recorded into the caller's command encoder.
 
 use wgpu::{CommandEncoder, Device, Queue, TextureView};
-use yoro::eyes::{PoseWarp, Warp};
-use yoro::synthesis::backend::{Places, WarpKind, map_sizes};
+use yoro::eyes::{MotionWarp, PoseWarp, Warp};
+use yoro::synthesis::ArgumentError;
+use yoro::synthesis::backend::{Kind, Places, WarpKind, map_sizes};
 
 use crate::buffers::Buffers;
 use crate::checks::{Checks, made, size};
@@ -19,7 +20,14 @@ pub type Gather = Pipeline<Warp>;
 /// Synthesis of a view in any pose near the source's: the march goes along a segment of any direction.
 pub type AnyView = Pipeline<PoseWarp>;
 
-/// The passes for one kind of warp: [`Gather`] or [`AnyView`].
+/// Synthesis of motion vectors between parallel eyes, for runtimes that make frames between those that are rendered. The
+/// source's colour is the vectors' texture, Rgba16Float with three components in NDC
+/// ([`VectorSpace`](yoro::eyes::VectorSpace)), with depth of the same size: that of the vectors that a runtime recommends,
+/// not that of the eye. The target receives vectors, and depth with [`Options::depth_format`]. Silhouettes are not
+/// blended, and a hole has its background's vector.
+pub type Motion = Pipeline<MotionWarp>;
+
+/// The passes for one kind of warp: [`Gather`], [`AnyView`] or [`Motion`].
 ///
 /// All calls share the intermediate buffers, so submit what they record to one queue. Up to 64 calls may be recorded
 /// before the first of them is submitted.
@@ -95,6 +103,9 @@ impl<W: WarpKind> Pipeline<W> {
     ) -> Result<(), WgpuError> {
         let [source_size, target_size] = warp.sizes();
         self.checks.frame(source, warp.sizes(), target)?;
+        if W::KIND == Kind::Motion && source.color.texture().format().components() < 3 {
+            return Err(ArgumentError::TwoComponents.into());
+        }
         let places = Places {
             source_origin: source.origin,
             image_size: size(source.color),

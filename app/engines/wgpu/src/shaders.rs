@@ -1,6 +1,6 @@
 //! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo xtask maintain wgsl`.
 
-use yoro::synthesis::backend::WarpKind;
+use yoro::synthesis::backend::{Kind, WarpKind};
 
 pub(crate) const SCREEN: &str = include_str!("wgsl/screen.wgsl");
 pub(crate) const COMPOSE: &str = include_str!("wgsl/compose.wgsl");
@@ -27,6 +27,12 @@ const GATHER: Shaders = Shaders {
     march_depth: include_str!("wgsl/march-depth.wgsl"),
 };
 
+const MOTION: Shaders = Shaders {
+    march: include_str!("wgsl/march-motion.wgsl"),
+    march_depth: include_str!("wgsl/march-motion-depth.wgsl"),
+    ..GATHER
+};
+
 const ANY_VIEW: Shaders = Shaders {
     tiles: include_str!("wgsl/any-view-tiles.wgsl"),
     spans: include_str!("wgsl/any-view-spans.wgsl"),
@@ -37,7 +43,11 @@ const ANY_VIEW: Shaders = Shaders {
 
 impl Shaders {
     pub(crate) fn of<W: WarpKind>() -> &'static Shaders {
-        if W::ANY_VIEW { &ANY_VIEW } else { &GATHER }
+        match W::KIND {
+            Kind::Gather => &GATHER,
+            Kind::Motion => &MOTION,
+            Kind::AnyView => &ANY_VIEW,
+        }
     }
 
     /// Returns the last pass, which optionally writes depth.

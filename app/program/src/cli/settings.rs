@@ -10,7 +10,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Method, Pipeline, PipelineOptions, StereoOptions};
-use yoro_settings::{Setting, Settings};
+use yoro_settings::{FrameRate, Setting, Settings};
 use yoro_viewer::stereo_options;
 
 /// A group of settings that a subcommand has options for.
@@ -296,11 +296,11 @@ impl SettingsArgs {
         let hud = self.no_hud.then(|| "hud=false".to_owned());
         let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
         let settings = defaults.changed(self.settings.as_deref(), overrides)?;
-        if settings.render_rate.is_some() {
+        if settings.frame_rate == FrameRate::Half {
             let near_field = settings.near_field.is_some().then_some("near-field");
             let paper = (settings.pipeline == Pipeline::Paper).then_some("pipeline=paper");
             if let Some(other) = near_field.or(paper) {
-                bail!("{other} has no effect with render-rate: leave one of them out");
+                bail!("{other} has no effect with frame-rate=half: leave one of them out");
             }
         }
         Ok(settings)

@@ -118,6 +118,17 @@ choices! {
         Paper = "paper",
     }
 
+    /// How many of the display's frames are rendered.
+    FrameRate {
+        /// Every frame
+        #[default]
+        Full = "full",
+        /// Every second one
+        Half = "half",
+        /// Every second one while the full rate is missed, where a headset's runtime makes the others
+        Auto = "auto",
+    }
+
     /// How the finished image follows the head after rendering.
     Timewarp {
         /// Not at all

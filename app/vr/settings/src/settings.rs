@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::choices::{
-    DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice, Performance, Pipeline,
-    Timewarp,
+    DisplayKind, FrameRate, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice, Performance,
+    Pipeline, Timewarp,
 };
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
@@ -140,13 +140,10 @@ settings! {
     /// Switch to two real renders while most of the view is too near.
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),
-    /// yoro: renders a second. Frames between two renders show the last one at the newest head pose, both eyes synthesized from
-    /// it; what moves in the scene stands still meanwhile. `method=auto` then means `yoro`. Without near
-    /// field, the switch to two renders and the paper's pipeline.
-    "render-rate" render_rate: Option<f32> = None;
-        value_name("HZ");
-        range(|s| s.render_rate.is_none_or(|hz| (5.0..=1000.0).contains(&hz)), "give renders per second from 5 to 1000, or auto");
-        auto("every frame"),
+    /// yoro and conventional: render every second frame only. The headset's runtime makes the others of colour, depth and
+    /// motion vectors; where it does not, the viewer does, at the newest head pose. `method=auto` then means `yoro`, without
+    /// near field, the switch to two renders and the paper's pipeline.
+    "frame-rate" frame_rate: FrameRate = FrameRate::default(),
     /// hybrid: the far field starts where the eyes' disparity is this many pixels.
     "split-disparity" split_disparity: f32 = 1.0;
         value_name("PIXELS");
@@ -432,7 +429,7 @@ mod tests {
         refused("screen=158x71", &["\"screen\"", "158x71mm", "auto"]);
         refused("screen=15.8x7.1mm", &["30 to 400"]);
         refused("best-rating=1", &["\"best-rating\"", "2 to 100"]);
-        refused("render-rate=1", &["\"render-rate\"", "5 to 1000"]);
+        refused("frame-rate=36", &["\"frame-rate\"", "full"]);
         refused("refresh-rate=0", &["\"refresh-rate\"", "auto"]);
     }
 

@@ -45,6 +45,8 @@ pub enum Action {
     StartScreen(bool),
     /// The user wants to share the log with another application. The platform has to do this.
     ShareLog,
+    /// The user wants to share the notices of others' code with another application. The platform has to do this.
+    ShareNotices,
     /// The platform has to start (true) or stop (false) looking for a viewer's code with the phone's camera.
     Scan(bool),
     /// The distance between the eyes.
@@ -75,6 +77,7 @@ impl fmt::Display for Action {
                 write!(f, "start screen: {}", if *is_shown { "shown" } else { "left" })
             }
             Action::ShareLog => f.write_str("the log is shared"),
+            Action::ShareNotices => f.write_str("the notices are shared"),
             Action::Scan(is_on) => write!(f, "scan: {}", if *is_on { "on" } else { "off" }),
             Action::Ipd(ipd) => write!(f, "ipd: {:.3} m", ipd.metres()),
             Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),

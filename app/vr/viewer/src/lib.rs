@@ -18,6 +18,7 @@ mod method_slot;
 pub mod openxr;
 mod options;
 mod questionnaire;
+mod rate;
 mod scene_slot;
 mod session_stats;
 mod viewer;

@@ -5,6 +5,7 @@ use std::rc::Rc;
 use crate::adaptive::{Controller, Load, Quality};
 use crate::error::ViewerError;
 use crate::options::{render_settings, stereo_options};
+use crate::rate::RateChooser;
 use crate::scene_slot::Shown;
 use yoro::choice::Cost;
 use yoro::eyes::EyePair;
@@ -13,7 +14,7 @@ use yoro_render::stereo::{
     Auto, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, SelectedMethod,
     StereoMethod as _, StereoOptions, Substituted,
 };
-use yoro_settings::Settings;
+use yoro_settings::{FrameRate, Settings};
 
 /// The stereo method in use. It is created once a scene is loaded.
 pub(crate) struct MethodSlot {
@@ -32,8 +33,14 @@ pub(crate) struct MethodSlot {
     made: Option<SelectedMethod>,
     /// True while both eyes are rendered for a comparison with the method.
     is_comparing: bool,
-    /// Time of the last frame that was rendered, while that frame may be shown again.
+    /// Time of the last frame that was rendered, while that frame may be shown again, and of the step before it.
     rendered_ns: Option<i64>,
+    step_ns: Option<i64>,
+    /// True if the last frame was shown again.
+    was_shown_again: bool,
+    /// True if the display's runtime makes the frames between those that are rendered.
+    runtime_makes_frames: bool,
+    rate: RateChooser,
 }
 
 impl MethodSlot {
@@ -50,6 +57,10 @@ impl MethodSlot {
             made: None,
             is_comparing: false,
             rendered_ns: None,
+            step_ns: None,
+            was_shown_again: false,
+            runtime_makes_frames: false,
+            rate: RateChooser::default(),
         }
     }
 
@@ -126,6 +137,7 @@ impl MethodSlot {
     /// Returns the settings' options with the pipeline and the ImBuffer in use.
     fn options(&self, settings: &Settings) -> StereoOptions {
         let mut options = stereo_options(settings, self.pipeline);
+        options.half_rate &= !self.runtime_makes_frames;
         let (imbuffer, divisor) = (&mut options.synthesis.paper.imbuffer, self.quality.imbuffer);
         *imbuffer = match *imbuffer {
             ImBufferSize::Divisor(n) => ImBufferSize::Divisor(n * divisor),
@@ -146,7 +158,7 @@ impl MethodSlot {
 
     /// Compiles the chosen method, if there is a context with a scene.
     pub fn make(&mut self, gl: Option<&Rc<Context>>, settings: &Settings) -> Result<(), GlError> {
-        self.rendered_ns = None;
+        self.forget_render();
         if let Some(gl) = gl {
             self.made = Some(self.create(gl, settings)?);
         }
@@ -219,25 +231,54 @@ impl MethodSlot {
         std::mem::replace(&mut self.is_comparing, is_comparing) != is_comparing
     }
 
-    /// Shows the last render again if the settings' render rate does not call for a new one yet, and the method can. A
-    /// frame is rendered if less than half a refresh is left until a render is due. Returns true if not rendered.
+    /// Says whether the display's runtime makes the frames between those that are rendered. Returns true if this is a
+    /// change, after which the method must be made again.
+    pub fn let_runtime_make_frames(&mut self, makes: bool) -> bool {
+        std::mem::replace(&mut self.runtime_makes_frames, makes) != makes
+    }
+
+    /// True if the display's runtime is to make every second frame.
+    pub fn leaves_frames_to_runtime(&self, settings: &Settings) -> bool {
+        self.runtime_makes_frames
+            && match settings.frame_rate {
+                FrameRate::Full => false,
+                FrameRate::Half => true,
+                FrameRate::Auto => self.rate.is_half(),
+            }
+    }
+
+    /// Forgets what was rendered: after a jump, nothing is where it would have moved to.
+    fn forget_render(&mut self) {
+        (self.rendered_ns, self.step_ns, self.was_shown_again) = (None, None, false);
+    }
+
+    /// Shows the last render again if the settings ask for half the rate, this is the frame between two renders, and the
+    /// method can. Returns true if so; otherwise the frame must be rendered.
     pub fn show_again(
         &mut self,
         settings: &Settings,
-        (now_ns, refresh_hz): (i64, f32),
+        now_ns: i64,
         pair: &EyePair,
         to: &[EyeTarget; 2],
     ) -> Result<bool, ViewerError> {
-        let Some(rate) = settings.render_rate else { return Ok(false) };
-        let refresh_ns = if refresh_hz > 0.0 { 1e9 / refresh_hz } else { 0.0 };
-        let is_due = |rendered_ns: i64| (now_ns - rendered_ns) as f32 + refresh_ns / 2.0 >= 1e9 / rate;
-        if !self.is_comparing && self.rendered_ns.is_some_and(|ns| !is_due(ns)) {
+        if settings.frame_rate != FrameRate::Half || self.runtime_makes_frames {
+            return Ok(false);
+        }
+        if let (false, false, Some(rendered_ns)) = (self.is_comparing, self.was_shown_again, self.rendered_ns)
+        {
             let made = self.made.as_mut().ok_or(ViewerError::NoContext)?;
-            if made.show_again(pair, to)? {
+            let past = (now_ns - rendered_ns) as f32;
+            let ahead = self.step_ns.map_or(0.0, |step| (past / step as f32).clamp(0.0, 1.0));
+            if made.show_again(pair, to, ahead)? {
+                self.was_shown_again = true;
                 return Ok(true);
             }
         }
-        self.rendered_ns = (!self.is_comparing).then_some(now_ns);
+        let step = self.rendered_ns.map(|rendered_ns| now_ns - rendered_ns).filter(|step| *step > 0);
+        self.forget_render();
+        if !self.is_comparing {
+            (self.rendered_ns, self.step_ns) = (Some(now_ns), step);
+        }
         Ok(false)
     }
 
@@ -291,9 +332,21 @@ impl MethodSlot {
 
     /// Makes an automatic choice measure again, after a change of the viewpoint or the resolution.
     pub fn measure_again(&mut self) {
-        self.rendered_ns = None;
+        self.forget_render();
+        self.rate.interrupt();
         if let Some(auto) = self.made.as_mut().and_then(SelectedMethod::auto_mut) {
             auto.scene_changed();
+        }
+    }
+
+    /// Takes a frame into account for `frame-rate=auto`.
+    pub fn judge_rate(&mut self, load: &Load, settings: &Settings) {
+        if settings.frame_rate == FrameRate::Auto
+            && self.runtime_makes_frames
+            && self.rate.frame(load, load.refresh_hz)
+        {
+            let which = if self.rate.is_half() { "every second frame" } else { "every frame" };
+            log::info!("frame-rate: {which} is rendered");
         }
     }
 
@@ -316,7 +369,8 @@ impl MethodSlot {
 
     /// Forgets the frames counted so far, which no longer describe the load after a pause.
     pub fn interrupt(&mut self) {
-        self.rendered_ns = None;
+        self.forget_render();
+        self.rate.interrupt();
         self.controller.restart();
     }
 

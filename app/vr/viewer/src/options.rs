@@ -3,7 +3,7 @@
 use yoro_gl::Capabilities;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions};
-use yoro_settings::{MSAA, Settings};
+use yoro_settings::{FrameRate, MSAA, Settings};
 
 /// Returns the renderer's settings for those of the viewer. If the driver is known and lacks the number of samples, it is
 /// the next smaller one that the driver has.
@@ -34,7 +34,7 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
         guard_band: settings.guard_band.unwrap_or(options.guard_band),
         near_field: settings.near_field,
         policy: settings.switch.then(NearFieldPolicy::default),
-        render_rate: settings.render_rate,
+        half_rate: settings.frame_rate == FrameRate::Half,
         split_disparity: settings.split_disparity,
     }
 }
@@ -56,7 +56,7 @@ mod tests {
                 "guard-band=40px",
                 "near-field=1",
                 "switch=false",
-                "render-rate=36",
+                "frame-rate=half",
                 "split-disparity=2.5",
             ],
         );

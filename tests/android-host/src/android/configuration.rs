@@ -1,4 +1,4 @@
-//! AConfiguration: the device's screen and language. The asset manager has no assets, since the application opens none.
+//! AConfiguration: the device's screen and language.
 
 #![allow(non_snake_case)]
 
@@ -19,7 +19,7 @@ pub struct AConfiguration {
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [
-            AAssetManager_fromJava, AConfiguration_copy, AConfiguration_delete, AConfiguration_fromAssetManager, AConfiguration_getCountry,
+            AConfiguration_copy, AConfiguration_delete, AConfiguration_fromAssetManager, AConfiguration_getCountry,
             AConfiguration_getDensity, AConfiguration_getKeyboard, AConfiguration_getKeysHidden,
             AConfiguration_getLanguage, AConfiguration_getMcc, AConfiguration_getMnc, AConfiguration_getNavHidden,
             AConfiguration_getNavigation, AConfiguration_getOrientation, AConfiguration_getScreenLong,
@@ -27,10 +27,6 @@ pub fn exports() -> Vec<Export> {
             AConfiguration_getUiModeNight, AConfiguration_getUiModeType, AConfiguration_new,
         ];
     ]
-}
-
-extern "C" fn AAssetManager_fromJava(_env: *const c_void, object: *const c_void) -> *const c_void {
-    if object.is_null() { std::ptr::null() } else { std::ptr::dangling() }
 }
 
 extern "C" fn AConfiguration_new() -> *mut AConfiguration {

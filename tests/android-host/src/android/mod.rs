@@ -1,6 +1,7 @@
 //! libandroid.so, liblog.so, and the parts of libcamera2ndk.so and libmediandk.so that the application uses.
 
 pub mod activity;
+pub mod assets;
 pub mod camera;
 pub mod choreographer;
 pub mod configuration;

@@ -1,6 +1,6 @@
 //! Runs the simulated Android host, and reads its results.
 
-use std::io::Write as _;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -44,6 +44,15 @@ pub fn script(name: &str) -> String {
 pub fn play(name: &str, device: &str, steps: &str) -> Option<Run> {
     let apk = named(APK).or_else(|| left_out(name, "there is no APK", APK, "builds one"))?;
     Some(run(Path::new(env!("CARGO_BIN_EXE_yoro-android-host")), &apk, name, device, steps))
+}
+
+/// Returns a file of the APK's assets. Prints a message and returns `None` if there is no APK.
+pub fn asset(test: &str, name: &str) -> Option<String> {
+    let apk = named(APK).or_else(|| left_out(test, "there is no APK", APK, "builds one"))?;
+    let mut archive = zip::ZipArchive::new(std::fs::File::open(apk).unwrap()).unwrap();
+    let mut text = String::new();
+    archive.by_name(&format!("assets/{name}")).unwrap().read_to_string(&mut text).unwrap();
+    Some(text)
 }
 
 /// Returns the folder of a run.

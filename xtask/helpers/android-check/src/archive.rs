@@ -7,11 +7,12 @@ use std::path::Path;
 
 use anyhow::Context as _;
 use xtask::folders::write;
-use xtask::ndk::target::{ARCHITECTURES, PAGE};
+use xtask::ndk::target::PAGE;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use super::report::{Report, some};
+use super::store::Store;
 
 /// Android maps this file out of the APK.
 const RESOURCES: &str = "resources.arsc";
@@ -70,11 +71,10 @@ impl Archive {
 
     /// Adds rows for the architectures, and for the alignment of the files that Android maps out of the archive. These
     /// include the libraries unless they are `unpacked` at installation.
-    pub fn check(&self, unpacked: bool, report: &mut Report) {
-        let wanted: Vec<&str> = ARCHITECTURES.iter().map(|architecture| architecture.abi).collect();
+    pub fn check(&self, store: Store, unpacked: bool, report: &mut Report) {
         let mut found: Vec<&str> = self.libraries.keys().filter_map(|name| name.split('/').nth(1)).collect();
         found.dedup();
-        report.equal("architectures", &found.join(" "), &wanted.join(" "));
+        report.equal("architectures", &found.join(" "), &store.abis().join(" "));
 
         let stored: Vec<_> = self.entries.iter().filter(|(_, entry)| entry.stored).collect();
         let wrong: Vec<&str> = stored
@@ -142,7 +142,7 @@ pub mod tests {
 
     fn problems(bytes: &[u8]) -> Vec<String> {
         let mut report = Report::default();
-        Archive::read(bytes).unwrap().check(false, &mut report);
+        Archive::read(bytes).unwrap().check(Store::None, false, &mut report);
         report.problems().into_iter().map(str::to_owned).collect()
     }
 
@@ -164,7 +164,7 @@ pub mod tests {
         let passes = |alignment| {
             let mut report = Report::default();
             let bytes = archive(&LIBRARIES, CompressionMethod::Stored, alignment);
-            Archive::read(&bytes).unwrap().check(true, &mut report);
+            Archive::read(&bytes).unwrap().check(Store::None, true, &mut report);
             report.passed()
         };
         assert!(passes(4));
@@ -193,6 +193,12 @@ pub mod tests {
         assert_eq!(problems(&archive(&LIBRARIES[..1], CompressionMethod::Deflated, 1)), ["architectures"]);
         let more = [LIBRARIES[0], "lib/armeabi-v7a/libyoro.so", LIBRARIES[1]];
         assert_eq!(problems(&archive(&more, CompressionMethod::Deflated, 1)), ["architectures"]);
+        for (libraries, passes) in [(&LIBRARIES[..1], true), (&LIBRARIES[..], false)] {
+            let mut report = Report::default();
+            let bytes = archive(libraries, CompressionMethod::Deflated, 1);
+            Archive::read(&bytes).unwrap().check(Store::Quest, true, &mut report);
+            assert_eq!(report.passed(), passes, "{report}");
+        }
     }
 
     #[test]

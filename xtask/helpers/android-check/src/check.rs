@@ -9,6 +9,7 @@ use xtask::ndk::sdk;
 use crate::archive::Archive;
 use crate::public::Public;
 use crate::report::Report;
+use crate::store::Store;
 use crate::{bundle, library, manifest, signature};
 
 /// Maximum size in bytes of a release with its built-in scenes.
@@ -18,7 +19,7 @@ const SIZE_LIMIT: u64 = 8_000_000;
 ///
 /// # Errors
 /// Fails if the file is missing or not an APK, or a tool for the checks is missing.
-pub fn check(path: &Path) -> anyhow::Result<Report> {
+pub fn check(path: &Path, store: Store) -> anyhow::Result<Report> {
     let shown = path.display();
     let bytes = fs::read(path)
         .with_context(|| format!("{shown} cannot be read (`cargo xtask apk` says where it puts an APK)"))?;
@@ -26,32 +27,38 @@ pub fn check(path: &Path) -> anyhow::Result<Report> {
         format!("{shown} is damaged or no APK: build it anew by `cargo xtask apk --release`")
     })?;
     if bundle::is_bundle(|name| archive.has(name)) {
-        return check_bundle(path);
+        return check_bundle(path, store);
     }
     if !archive.has("AndroidManifest.xml") {
         bail!("{shown} is an archive without AndroidManifest.xml, and so no APK: name the .apk file");
     }
     let mut report = Report::default();
+    if store == Store::Play {
+        report.equal("form", "APK", "a bundle: cargo xtask apk --release --bundle");
+    }
     let manifest = manifest::Manifest::read(path)?;
     let size = bytes.len() as u64;
     let too_large = (size > SIZE_LIMIT && !manifest.is_debuggable())
         .then(|| format!("a release must be under {} MB", SIZE_LIMIT / 1_000_000));
     report.row("size", format!("{:.2} MB", size as f64 / 1e6), too_large);
-    manifest.check(&archive, &mut report);
+    manifest.check(&archive, store, &mut report);
     signature::check(path, &mut report)?;
-    archive.check(manifest.unpacks_libraries(), &mut report);
+    archive.check(store, manifest.unpacks_libraries(), &mut report);
     check_libraries(&archive, &mut report)?;
     Ok(report)
 }
 
 /// Checks a bundle: its layout, and the APK made from it, without signature and alignment, which are up to the store.
-fn check_bundle(path: &Path) -> anyhow::Result<Report> {
+fn check_bundle(path: &Path, store: Store) -> anyhow::Result<Report> {
     let mut report = Report::default();
+    if store == Store::Quest {
+        report.equal("form", "bundle", "an APK: cargo xtask apk --release --quest");
+    }
     let apk = path.with_extension("checked.apk");
     bundle::check(path, &apk, &mut report)?;
     let manifest = manifest::Manifest::read(&apk)?;
     let archive = Archive::read(&fs::read(&apk).context("aapt2 has written no APK")?)?;
-    manifest.check(&archive, &mut report);
+    manifest.check(&archive, store, &mut report);
     check_libraries(&archive, &mut report)?;
     for left in [apk.with_extension("proto.apk"), apk] {
         fs::remove_file(&left).with_context(|| format!("{} cannot be removed", left.display()))?;
@@ -75,7 +82,7 @@ mod tests {
     fn what_is_no_apk_is_refused_with_a_remedy() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("some.apk");
-        let refusal = || check(&path).unwrap_err().to_string();
+        let refusal = || check(&path, Store::None).unwrap_err().to_string();
         assert!(refusal().contains("some.apk cannot be read"));
         fs::write(&path, "no archive").unwrap();
         assert!(refusal().contains("some.apk is damaged or no APK"));

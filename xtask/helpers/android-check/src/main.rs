@@ -1,5 +1,5 @@
-//! Works with Android's archives and libraries. `check APK` checks whether Android will install and start an APK or a
-//! bundle (.aab), `bundle APK AAB` converts an APK to a bundle, `loader LIBRARY` prints the architecture of an OpenXR
+//! Works with Android's archives and libraries. `check APK STORE` checks whether Android will install and start an
+//! APK or a bundle (.aab), and whether a store (`quest`, `play`; `-` for none) takes it, `bundle APK AAB` converts an APK to a bundle, `loader LIBRARY` prints the architecture of an OpenXR
 //! loader, and `pack AAR FOLDER` packs the files of a folder.
 //!
 //! This is a separate program so that only people who build for Android have to compile its dependencies.
@@ -13,11 +13,13 @@ mod manifest;
 mod public;
 mod report;
 mod signature;
+mod store;
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::bail;
+use store::Store;
 use xtask::console;
 
 fn main() -> ExitCode {
@@ -32,8 +34,8 @@ fn main() -> ExitCode {
 /// Returns the text to print, and false if a check has failed.
 fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
     Ok(match arguments {
-        ["check", apk] => {
-            let report = check::check(Path::new(apk))?;
+        ["check", apk, store] => {
+            let report = check::check(Path::new(apk), Store::named(store)?)?;
             (report.to_string(), report.passed())
         }
         ["bundle", apk, bundle] => {
@@ -45,6 +47,6 @@ fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
             archive::pack(Path::new(folder), Path::new(packed))?;
             (String::new(), true)
         }
-        _ => bail!("usage: check APK, bundle APK AAB, loader LIBRARY, or pack AAR FOLDER"),
+        _ => bail!("usage: check APK STORE, bundle APK AAB, loader LIBRARY, or pack AAR FOLDER"),
     })
 }

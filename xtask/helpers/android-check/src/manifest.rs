@@ -6,22 +6,33 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 use xtask::ndk::sdk;
-use xtask::ndk::target::{ARCHITECTURES, MIN_API, NATIVE_LIBRARIES, PROPERTIES, TARGET_API};
+use xtask::ndk::target::{MIN_API, NATIVE_LIBRARIES, PROPERTIES};
 
 use super::archive::Archive;
 use super::report::Report;
+use super::store::Store;
 
 const PACKAGE: &str = "io.github.yoro";
 const LIBRARY: &str = "yoro_android";
 /// Permissions that the application requests. It uses the camera to scan a viewer's code, and OpenXR runtimes may
 /// require permissions of their own.
-const PERMISSIONS: &str = "android.permission.CAMERA org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
+const PERMISSIONS: [&str; 3] = [
+    "android.permission.CAMERA",
+    "org.khronos.openxr.permission.OPENXR",
+    "org.khronos.openxr.permission.OPENXR_SYSTEM",
+];
 /// Meta headsets that the manifest must name, and `all` for headsets that do not know the later names.
 const DEVICES: [&str; 2] = ["all", "quest3"];
+/// The list in the APK for Meta's store.
+const QUEST_DEVICES: &str = "quest2|questpro|quest3|quest3s";
+/// The categories of the action MAIN in the APK for Meta's store: the two that it demands, and Khronos's.
+const QUEST_CATEGORIES: &str = "android.intent.category.LAUNCHER com.oculus.intent.category.VR \
+                                org.khronos.openxr.intent.category.IMMERSIVE_HMD";
 /// Changes that must not restart the activity: locale, touchscreen, keyboard, keyboardHidden, navigation, orientation,
 /// screenLayout, uiMode, screenSize, smallestScreenSize, density, layoutDirection, colorMode, fontScale.
 const CONFIG_CHANGES: u64 = 0x4000_7ffc;
 
+const DEVICE_LIST: &str = "com.oculus.supportedDevices";
 const NAME: &str = "android:name";
 const VALUE: &str = "android:value";
 const MIME_TYPE: &str = "android:mimeType";
@@ -51,9 +62,8 @@ const LAUNCHER: [Rule<'_>; 3] = [
     rule("category", &[(NAME, "android.intent.category.LAUNCHER")], NO_LAUNCHER),
 ];
 /// Rules for an immersive application that finds its OpenXR runtime.
-const HEADSETS: [Rule<'_>; 9] = [
+const HEADSETS: [Rule<'_>; 6] = [
     rule("category", &[(NAME, "com.oculus.intent.category.VR")], FLAT),
-    rule("category", &[(NAME, "com.htc.intent.category.VRAPP")], FLAT),
     rule("category", &[(NAME, "org.khronos.openxr.intent.category.IMMERSIVE_HMD")], FLAT),
     // Android hides the runtime brokers from applications that do not declare that they use them.
     rule(
@@ -67,6 +77,10 @@ const HEADSETS: [Rule<'_>; 9] = [
     rule("action", &[(NAME, "org.khronos.openxr.OpenXRRuntimeService")], NO_SERVICE),
     rule("action", &[(NAME, "org.khronos.openxr.OpenXRApiLayerService")], NO_SERVICE),
     rule("meta-data", &[(NAME, "com.oculus.vr.focusaware"), (VALUE, "true")], FLAT),
+];
+/// Rules of other makers' headsets, which the APK for Meta's store does not follow.
+const OTHER_HEADSETS: [Rule<'_>; 3] = [
+    rule("category", &[(NAME, "com.htc.intent.category.VRAPP")], FLAT),
     rule("meta-data", &[(NAME, "pvr.app.type"), (VALUE, "vr")], FLAT),
     rule("meta-data", &[(NAME, "pvr.sdk.version"), (VALUE, "OpenXR")], FLAT),
 ];
@@ -105,6 +119,15 @@ const SCREEN: [Rule<'_>; 4] = [
         "in a split screen the lenses' centres would be wrong",
     ),
     rule("application", &[("android:theme", ANY)], "a title bar would be in the picture"),
+];
+const QUEST: [Rule<'_>; 3] = [
+    rule(
+        "uses-feature",
+        &[(NAME, "android.hardware.vr.headtracking"), (REQUIRED, "true"), ("android:version", "0x1")],
+        "the store refuses it",
+    ),
+    rule("manifest", &[("android:installLocation", "0x0")], "the store refuses it"),
+    rule("manifest", &[("android:versionCode", ANY)], "the store refuses it"),
 ];
 const OPTIONAL: [Rule<'_>; 3] = [
     optional(&[(NAME, "android.hardware.vr.headtracking"), (REQUIRED, "false")]),
@@ -232,7 +255,7 @@ impl Manifest {
     }
 
     /// Adds all rows for the manifest.
-    pub fn check(&self, archive: &Archive, report: &mut Report) {
+    pub fn check(&self, archive: &Archive, store: Store, report: &mut Report) {
         let manifest = self.one("manifest");
         let package = manifest.text("package");
         let problem = (package != PACKAGE).then(|| format!("should be {PACKAGE}"));
@@ -243,7 +266,7 @@ impl Manifest {
         let level = |attribute| sdk.number(attribute).map_or("none".to_owned(), |level| level.to_string());
         let levels =
             format!("{}, made for {}", level("android:minSdkVersion"), level("android:targetSdkVersion"));
-        report.equal("API level", &levels, &format!("{MIN_API}, made for {TARGET_API}"));
+        report.equal("API level", &levels, &format!("{MIN_API}, made for {}", store.target_api()));
 
         let version = self.all("uses-feature").find_map(|element| element.number("android:glEsVersion"));
         let version = version.map(|v| format!("{}.{}", v >> 16, v & 0xffff)).unwrap_or_default();
@@ -251,20 +274,29 @@ impl Manifest {
         let is_optional = |feature: &Element| feature.text(REQUIRED) == "false";
         let required =
             self.names("uses-feature", |feature| !feature.text(NAME).is_empty() && !is_optional(feature));
-        let problem =
-            (!required.is_empty()).then(|| format!("{required} shuts devices out: required = false"));
-        report.row(
-            "optional",
-            self.names("uses-feature", is_optional),
-            problem.or_else(|| self.broken(&OPTIONAL)),
-        );
-        report.equal("permissions", &self.names("uses-permission", |_| true), PERMISSIONS);
+        let permissions = self.names("uses-permission", |_| true);
+        if store == Store::Quest {
+            report.row("required", required, self.broken(&QUEST));
+            report.equal("permissions", &permissions, &PERMISSIONS[1..].join(" "));
+        } else {
+            let problem =
+                (!required.is_empty()).then(|| format!("{required} shuts devices out: required = false"));
+            let optional = self.names("uses-feature", is_optional);
+            report.row("optional", optional, problem.or_else(|| self.broken(&OPTIONAL)));
+            report.equal("permissions", &permissions, &PERMISSIONS.join(" "));
+        }
 
         report.equal("activity", self.one("activity").text(NAME), "android.app.NativeActivity");
         report.row("launcher", "exported, MAIN, LAUNCHER", self.broken(&LAUNCHER));
-        report.row("headsets", "immersive by OpenXR", self.no_headset());
-        report.row("game loops", "TEST_LOOP, labels", self.broken(&GAME_LOOPS));
-        report.row("sharing", "viewers and models, by SEND and VIEW", self.broken(&SHARING));
+        if store == Store::Quest {
+            report.row("headset", "immersive by OpenXR", self.no_quest());
+            report.equal("categories", &self.names("category", |_| true), QUEST_CATEGORIES);
+            report.equal("devices", self.meta_data(DEVICE_LIST), QUEST_DEVICES);
+        } else {
+            report.row("headsets", "immersive by OpenXR", self.no_headset());
+            report.row("game loops", "TEST_LOOP, labels", self.broken(&GAME_LOOPS));
+            report.row("sharing", "viewers and models, by SEND and VIEW", self.broken(&SHARING));
+        }
         let changes = self.one("activity").number("android:configChanges").unwrap_or(0);
         let lost = CONFIG_CHANGES & !changes;
         let problem = (lost != 0).then(|| format!("changes {lost:#x} of configChanges would start it anew"));
@@ -273,7 +305,14 @@ impl Manifest {
             "landscape, full, goes on when the device changes",
             self.broken(&SCREEN).or(problem),
         );
-        self.check_files(archive, report);
+        self.check_files(archive, store, report);
+    }
+
+    /// Returns why a Quest would not start the application as immersive, or would not let it find its runtime.
+    fn no_quest(&self) -> Option<String> {
+        let attributes = [(NAME, NATIVE_LIBRARIES[1]), (REQUIRED, "false")];
+        let library = rule("uses-native-library", &attributes, "Android would not load it");
+        self.broken(HEADSETS.iter().chain([&library]))
     }
 
     /// Returns why headsets would not start the application as immersive, or would not let it find its runtime.
@@ -287,14 +326,14 @@ impl Manifest {
             .iter()
             .map(|attributes| rule("property", attributes, "Android XR would show a flat panel"));
         let rules: Vec<Rule<'_>> = libraries.chain(properties).collect();
-        let devices = self.meta_data("com.oculus.supportedDevices");
+        let devices = self.meta_data(DEVICE_LIST);
         let missing = DEVICES.iter().find(|device| !devices.split('|').any(|listed| listed == **device));
-        let problem = missing.map(|device| format!("com.oculus.supportedDevices should list {device}"));
-        self.broken(HEADSETS.iter().chain(&rules)).or(problem)
+        let problem = missing.map(|device| format!("{DEVICE_LIST} should list {device}"));
+        self.broken(HEADSETS.iter().chain(&OTHER_HEADSETS).chain(&rules)).or(problem)
     }
 
     /// Adds rows for the files that the manifest refers to.
-    fn check_files(&self, archive: &Archive, report: &mut Report) {
+    fn check_files(&self, archive: &Archive, store: Store, report: &mut Report) {
         let problem = (!archive.has(&self.icon)).then(|| "no such file".to_owned());
         report.row("icon", self.icon.as_str(), problem);
         report.equal("label", self.one("application").text("android:label"), "yoro");
@@ -303,8 +342,8 @@ impl Manifest {
             .then(|| "compressed libraries must be unpacked (extract_native_libs)".to_owned());
         report.row("libraries", if unpacked { "unpacked at installation" } else { "in the APK" }, problem);
         let name = self.meta_data("android.app.lib_name");
-        let paths = ARCHITECTURES.map(|architecture| format!("lib/{}/lib{name}.so", architecture.abi));
-        let absent: Vec<String> = paths.into_iter().filter(|path| !archive.has(path)).collect();
+        let paths = store.abis().into_iter().map(|abi| format!("lib/{abi}/lib{name}.so"));
+        let absent: Vec<String> = paths.filter(|path| !archive.has(path)).collect();
         let problem = if name != LIBRARY {
             Some(format!("should be {LIBRARY}"))
         } else {
@@ -346,9 +385,13 @@ mod tests {
     ];
 
     fn report(tree: &str, badging: &str, files: &[&str]) -> Report {
+        report_for(Store::None, tree, badging, files)
+    }
+
+    fn report_for(store: Store, tree: &str, badging: &str, files: &[&str]) -> Report {
         let archive = Archive::read(&archive(files, CompressionMethod::Deflated, 1)).unwrap();
         let mut report = Report::default();
-        Manifest::parse(tree, badging).check(&archive, &mut report);
+        Manifest::parse(tree, badging).check(&archive, store, &mut report);
         report
     }
 
@@ -435,6 +478,15 @@ mod tests {
         assert_eq!(report(TREE, BADGING, &FILES[1..]).problems(), ["icon"]);
         assert_eq!(report(TREE, BADGING, &FILES[..2]).problems(), ["its library"]);
         assert_eq!(report(TREE, "", &FILES).problems(), ["icon"]);
+    }
+
+    /// `cargo xtask apk --quest` checks the APK that it takes.
+    #[test]
+    fn metas_store_refuses_the_common_apk_by_each_of_its_rules() {
+        let report = report_for(Store::Quest, TREE, BADGING, &FILES[..2]);
+        let rules = ["API level", "required", "permissions", "categories", "devices"];
+        assert_eq!(report.problems(), rules, "{report}");
+        assert!(report_for(Store::Play, TREE, BADGING, &FILES).passed());
     }
 
     #[test]

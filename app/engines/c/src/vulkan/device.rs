@@ -3,26 +3,39 @@
 use std::ffi::{CStr, c_char};
 use std::time::Duration;
 
+use yoro::synthesis::backend::Kind;
 use yoro::vulkan::ash::{Device, Instance, StaticFn, vk};
-use yoro::vulkan::{AnyView, Composer, Gather, Host, PassTimes};
+use yoro::vulkan::{AnyView, Composer, Gather, Host, Motion, PassTimes};
 
 use super::types::{YoroVkInfo, check_format};
 use crate::context::{Backend, YORO_API_VULKAN, YoroCapabilities, YoroTimes};
 use crate::result::{Failure, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL};
-use crate::types::is_pose;
+use crate::types::warp_kind;
 
 /// The passes for one kind of warp.
 pub(super) enum Passes {
     Eyes(Gather),
     Pose(AnyView),
+    Motion(Motion),
 }
 
-/// Calls a method that the passes of both kinds have.
+impl Passes {
+    pub(super) fn kind(&self) -> Kind {
+        match self {
+            Passes::Eyes(_) => Kind::Gather,
+            Passes::Pose(_) => Kind::AnyView,
+            Passes::Motion(_) => Kind::Motion,
+        }
+    }
+}
+
+/// Calls a method that the passes of all kinds have.
 macro_rules! of_passes {
     ($passes:expr, $method:ident($($argument:expr),*)) => {
         match $passes {
             Passes::Eyes(passes) => passes.$method($($argument),*),
             Passes::Pose(passes) => passes.$method($($argument),*),
+            Passes::Motion(passes) => passes.$method($($argument),*),
         }
     };
 }
@@ -105,9 +118,10 @@ impl Vulkan {
         let options = info.options();
         // SAFETY: the header requires handles that are valid, belong together, and outlive the context.
         let passes = unsafe {
-            match is_pose(info.warp_kind)? {
-                true => Passes::Pose(AnyView::new(&host, &options)?),
-                false => Passes::Eyes(Gather::new(&host, &options)?),
+            match warp_kind(info.warp_kind)? {
+                Kind::AnyView => Passes::Pose(AnyView::new(&host, &options)?),
+                Kind::Gather => Passes::Eyes(Gather::new(&host, &options)?),
+                Kind::Motion => Passes::Motion(Motion::new(&host, &options)?),
             }
         };
         // SAFETY: as above.

@@ -3,6 +3,7 @@
 use std::ffi::c_char;
 
 use yoro::synthesis::ArgumentError;
+use yoro::synthesis::backend::Kind;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{ImageState, LayerImage, Options, Use, Uses, VulkanError};
 
@@ -11,7 +12,7 @@ use crate::result::{
     YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YORO_ERROR_UNSUPPORTED,
     YORO_ERROR_VALUE, YoroMessages,
 };
-use crate::types::{YoroWarpKind, is_pose};
+use crate::types::{YoroWarpKind, warp_kind};
 use crate::versioned::versioned;
 
 /// vkGetInstanceProcAddr of the Vulkan loader, or of a layer that replaces it.
@@ -221,7 +222,10 @@ impl YoroVkInfo {
     /// Returns the size of the buffers of a context with these options, in bytes.
     pub(super) fn buffer_bytes(&self) -> Result<u64, Failure> {
         let options = self.options();
-        Ok(if is_pose(self.warp_kind)? { options.any_view_buffer_bytes() } else { options.buffer_bytes() })
+        Ok(match warp_kind(self.warp_kind)? {
+            Kind::AnyView => options.any_view_buffer_bytes(),
+            Kind::Gather | Kind::Motion => options.buffer_bytes(),
+        })
     }
 }
 
@@ -306,6 +310,7 @@ impl From<VulkanError> for Failure {
             VulkanError::Format { .. } | VulkanError::OtherFormat { .. } => YORO_ERROR_FORMAT,
             VulkanError::QueueFamily(_) | VulkanError::DynamicRendering => YORO_ERROR_UNSUPPORTED,
             VulkanError::Argument(ArgumentError::Size { size, .. }) if size.contains(&0) => YORO_ERROR_VALUE,
+            VulkanError::Argument(ArgumentError::TwoComponents) => YORO_ERROR_FORMAT,
             VulkanError::Argument(_) => YORO_ERROR_TOO_LARGE,
             VulkanError::NotRegistered => YORO_ERROR_NOT_REGISTERED,
             _ => YORO_ERROR_DRIVER,

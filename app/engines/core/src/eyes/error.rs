@@ -72,6 +72,14 @@ pub enum EyesError {
     /// The depth planes are out of order.
     #[error("the depth planes are out of order: need 0 < near < far, and a near plane that is finite")]
     Planes,
+    /// Motion vectors of the two frames have no law in common.
+    #[error(
+        "{what} changed between the frames, so that motion vectors do not tell the other eye's: mark this frame as not to be extrapolated"
+    )]
+    OtherFrame {
+        /// What changed.
+        what: &'static str,
+    },
     /// The guard band is wider than [`GuardBand::MAX_PIXELS`], or its distance is not positive and finite.
     #[error(
         "a guard band of {0} is impossible; give none, at most {max}px, or a finite distance of more than 0",

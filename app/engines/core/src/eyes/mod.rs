@@ -5,8 +5,10 @@
 
 mod depth;
 mod error;
+mod extrapolation;
 mod foveation;
 mod guard_band;
+mod motion;
 mod pair;
 mod pose_warp;
 mod view;
@@ -14,8 +16,10 @@ mod warp;
 
 pub use depth::{DepthConvention, DepthRange};
 pub use error::EyesError;
+pub use extrapolation::Extrapolation;
 pub use foveation::{Composition, Foveation, FoveationLevel, Gaze, InsetPlace, Level, LevelPlace, Levels};
 pub use guard_band::{GuardBand, ParseGuardBandError};
+pub use motion::{MotionLaw, MotionWarp, Ndc, VectorSpace, VectorsOf};
 pub use pair::{EyeOptions, EyePair, SynthesisViews};
 pub use pose_warp::{GuardedView, HeadMotion, PoseWarp};
 pub use view::{Frustum, Pose, View};

@@ -1,9 +1,10 @@
 //! Synthesis on OpenGL: from two textures of one eye to a framebuffer with the other eye.
 //!
 //! [`Gather`] takes a [`Warp`](crate::eyes::Warp) between parallel eyes, [`AnyView`] a
-//! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. Both are a [`Pipeline`], and need OpenGL
+//! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. [`Motion`] makes the other eye's motion
+//! vectors. All are a [`Pipeline`], and need OpenGL
 //! ES 3.0, desktop OpenGL 4.5 (4.3 with GL_ARB_ES3_1_compatibility) or WebGL 2. `examples/engine.rs` uses one in a
-//! separate engine. [`GuessedDepth`] comes before [`Gather`] where only one sample's depth of an anti-aliased image can
+//! separate engine. [`Extrapolator`] moves a source on to a later time. [`GuessedDepth`] comes before [`Gather`] where only one sample's depth of an anti-aliased image can
 //! be had.
 //!
 //! A [`Composer`] makes an eye from the levels of a foveated view.
@@ -13,6 +14,7 @@
 //! waiting; [`Context::take_pass_times`] waits.
 
 mod composer;
+mod extrapolator;
 mod guessed_depth;
 mod pipeline;
 
@@ -21,9 +23,10 @@ use crate::synthesis::backend::{Places, WarpKind, map_sizes};
 use yoro_gl::Program;
 
 pub use composer::{Composer, InsetImage, LevelImage, LevelImages};
+pub use extrapolator::Extrapolator;
 pub use glow;
 pub use guessed_depth::GuessedDepth;
-pub use pipeline::{AnyView, Gather, Pipeline};
+pub use pipeline::{AnyView, Gather, Motion, Pipeline};
 /// The types of `yoro-gl` that a host needs: its context in a wrapper, and where to draw.
 pub use yoro_gl::{Capabilities, Context, Destination, GlApi, GlError, PassTime, Profiling};
 

@@ -6,8 +6,8 @@ use std::rc::Rc;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
 
 use super::{GlState, Options, Outputs, Source, draw_target};
-use crate::eyes::{PoseWarp, Warp};
-use crate::synthesis::backend::{UniformBlock as _, WarpKind, map_sizes};
+use crate::eyes::{MotionWarp, PoseWarp, Warp};
+use crate::synthesis::backend::{Kind, UniformBlock as _, WarpKind, map_sizes};
 
 /// Synthesis between parallel eyes: the march goes along the source's row.
 pub type Gather = Pipeline<Warp>;
@@ -17,7 +17,16 @@ pub type Gather = Pipeline<Warp>;
 /// source map, which can only hold columns.
 pub type AnyView = Pipeline<PoseWarp>;
 
-/// The passes for a kind of warp: [`Gather`] or [`AnyView`]. All are fragment passes: tile bounds, tile spans, march. The
+/// Synthesis of motion vectors between parallel eyes, for runtimes that make frames between those that are rendered. The
+/// source's colour is the vectors' texture, RGBA16F with three components in NDC ([`VectorSpace`]), with depth of the same
+/// size: that of the vectors that a runtime recommends, not that of the eye. Two components are not enough: a hand that
+/// comes near moves sideways in the other eye, by 8 pixels of 1024. The target receives vectors, and with
+/// [`Outputs::depth`] depth. Silhouettes are not blended, and a hole has its background's vector.
+///
+/// [`VectorSpace`]: crate::eyes::VectorSpace
+pub type Motion = Pipeline<MotionWarp>;
+
+/// The passes for a kind of warp: [`Gather`], [`AnyView`] or [`Motion`]. All are fragment passes: tile bounds, tile spans, march. The
 /// two intermediate buffers have 16 bytes per tile of 16 x 8 pixels ([`buffer_bytes`](super::buffer_bytes)).
 ///
 /// The context must be current on the calling thread. The picture does not depend on the context's state: a call sets
@@ -93,8 +102,19 @@ const ANY_VIEW: Shaders = Shaders {
     march_fragment: "synthesis/any_view/march.frag",
 };
 
+const MOTION: Shaders = Shaders {
+    tiles: ["motion tiles", GATHER.tiles[1]],
+    spans: ["motion spans", GATHER.spans[1]],
+    march: "motion march",
+    ..GATHER
+};
+
 impl<W: WarpKind> Pipeline<W> {
-    const SHADERS: Shaders = if W::ANY_VIEW { ANY_VIEW } else { GATHER };
+    const SHADERS: Shaders = match W::KIND {
+        Kind::Gather => GATHER,
+        Kind::Motion => MOTION,
+        Kind::AnyView => ANY_VIEW,
+    };
 
     /// Compiles the passes. Changes the same state as [`Pipeline::prepare`], or none with [`GlState::Preserve`].
     ///
@@ -118,7 +138,7 @@ impl<W: WarpKind> Pipeline<W> {
         outputs: Outputs,
         macros: &[&'static str],
     ) -> Result<Pipeline<W>, GlError> {
-        if W::ANY_VIEW && outputs.source_map {
+        if W::KIND == Kind::AnyView && outputs.source_map {
             return Err(GlError::Unsupported(
                 "any view has no source map, which can only hold columns".into(),
             ));
@@ -130,13 +150,16 @@ impl<W: WarpKind> Pipeline<W> {
             let map = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba32Ui, Filter::Nearest)], None);
             let Shaders { tiles, spans, march_vertex, march_fragment, .. } = Self::SHADERS;
             let march = ShaderSource::Raster { vertex: march_vertex, fragment: march_fragment };
+            let motion = (W::KIND == Kind::Motion).then(|| ("MOTION", String::new()));
+            let march_defines: Vec<_> =
+                outputs.defines().into_iter().chain(motion).chain(defines.iter().cloned()).collect();
             Ok(Pipeline {
                 gl: gl.clone(),
                 outputs,
                 options: *options,
                 tiles: screen(tiles[1])?,
                 spans: screen(spans[1])?,
-                march: Program::new(gl, march, &[outputs.defines(), defines.clone()].concat())?,
+                march: Program::new(gl, march, &march_defines)?,
                 tile_map: map()?,
                 span_map: map()?,
                 warp: PhantomData,

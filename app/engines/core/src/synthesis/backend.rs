@@ -5,7 +5,7 @@ use bytemuck::Pod;
 
 pub use super::error::{check_rectangle, check_size};
 use super::uniforms::{PoseUniforms, TILE, Uniforms};
-use crate::eyes::{PoseWarp, Warp};
+use crate::eyes::{MotionWarp, PoseWarp, Warp};
 
 /// The places of source and target in their images.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ pub fn tiles([columns, rows]: [u32; 2]) -> [u32; 2] {
 /// Returns the sizes of the tile map and of the span map, for the sizes of source and target in pixels. The span map has
 /// the target's size in tiles, but with the source's rows between parallel eyes.
 pub fn map_sizes<W: WarpKind>([source, target]: [[u32; 2]; 2]) -> [[u32; 2]; 2] {
-    [tiles(source), tiles(if W::ANY_VIEW { target } else { [target[0], source[1]] })]
+    [tiles(source), tiles(if W::KIND == Kind::AnyView { target } else { [target[0], source[1]] })]
 }
 
 /// The uniform block of the passes.
@@ -38,12 +38,23 @@ pub trait UniformBlock: Pod {
     fn set(&self, program: &yoro_gl::Program);
 }
 
+/// The passes of a kind of warp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Those of `Gather`.
+    Gather,
+    /// Those of `Gather`, with vectors for colours.
+    Motion,
+    /// Those of `AnyView`.
+    AnyView,
+}
+
 /// A kind of warp, with what the pipelines need to draw its passes.
 pub trait WarpKind: Copy {
     /// The uniform block of the passes.
     type Uniforms: UniformBlock;
-    /// True for warps to any view.
-    const ANY_VIEW: bool;
+    /// The passes that draw it.
+    const KIND: Kind;
 
     /// Returns the width and height of the source and of the target in pixels.
     fn sizes(&self) -> [[u32; 2]; 2];
@@ -57,7 +68,7 @@ pub trait WarpKind: Copy {
 
 impl WarpKind for Warp {
     type Uniforms = Uniforms;
-    const ANY_VIEW: bool = false;
+    const KIND: Kind = Kind::Gather;
 
     fn sizes(&self) -> [[u32; 2]; 2] {
         [self.source_size, self.target_size]
@@ -72,9 +83,26 @@ impl WarpKind for Warp {
     }
 }
 
+impl WarpKind for MotionWarp {
+    type Uniforms = Uniforms;
+    const KIND: Kind = Kind::Motion;
+
+    fn sizes(&self) -> [[u32; 2]; 2] {
+        self.warp.sizes()
+    }
+
+    fn uniforms(&self, places: &Places) -> Uniforms {
+        Uniforms::of_part(&self.warp, places).with_motion(&self.law)
+    }
+
+    fn uniforms_from_top(&self, places: &Places) -> Uniforms {
+        Uniforms::of_part(&self.warp.rows_from_top(), places).with_motion(&self.law)
+    }
+}
+
 impl WarpKind for PoseWarp {
     type Uniforms = PoseUniforms;
-    const ANY_VIEW: bool = true;
+    const KIND: Kind = Kind::AnyView;
 
     fn sizes(&self) -> [[u32; 2]; 2] {
         [self.source_size, self.target_size]

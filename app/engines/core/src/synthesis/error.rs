@@ -17,6 +17,11 @@ pub enum ArgumentError {
         /// The largest width and height.
         limit: [u32; 2],
     },
+    /// Motion vectors lack their third component.
+    #[error(
+        "motion vectors of two components do not tell how a surface that comes nearer moves in the other eye (a hand at arm's length: by 8 pixels of 1024); give three, such as RGBA in half floats"
+    )]
+    TwoComponents,
     /// A rectangle reaches beyond its image.
     #[error(
         "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",

@@ -5,7 +5,7 @@ use glam::{IVec2, Vec2, Vec4};
 
 use super::backend::{Places, UniformBlock, tiles};
 use super::forward::ForwardLaw;
-use crate::eyes::{PoseWarp, Warp};
+use crate::eyes::{MotionLaw, PoseWarp, VectorsOf, Warp};
 
 /// Columns and rows of a tile, as in `include/source.glsl`.
 pub(super) const TILE: [u32; 2] = [16, 8];
@@ -80,6 +80,9 @@ uniforms! {
         source_origin: IVec2 = "ivec2",
         /// One pixel of the source's image in texture coordinates, if the source is a part of it.
         texel: Vec2 = "vec2",
+        /// For motion vectors: x of the target per unit of the vector's z and of stored depth, x that is added, and 1 if
+        /// the vectors are those of the whole source (0 if of the dominant eye).
+        motion: Vec4 = "vec4",
     }
 }
 
@@ -201,7 +204,15 @@ impl Uniforms {
             farthest: (law.far - law.offset + 0.01) as f32,
             source_origin: size(places.source_origin),
             texel: pair(1.0 / image_width, 1.0 / image_height),
+            motion: Vec4::ZERO,
         }
+    }
+
+    /// Returns the uniforms with the law of motion vectors.
+    pub(super) fn with_motion(self, law: &MotionLaw) -> Uniforms {
+        let of_source = f64::from(u8::from(law.of == VectorsOf::Source));
+        let motion = [law.per_z, law.per_depth, law.constant, of_source].map(|n| n as f32);
+        Uniforms { motion: Vec4::from(motion), ..self }
     }
 }
 

@@ -52,3 +52,15 @@ pub(super) fn sampled_state(image: &LayerImage) -> ImageState {
     };
     ImageState { layout, ..ImageState::SAMPLED }
 }
+
+/// Returns the number of components of a colour format that can be filtered, 4 if it has three or more.
+pub(super) fn components(format: vk::Format) -> u32 {
+    match format {
+        vk::Format::R8_UNORM | vk::Format::R8_SNORM | vk::Format::R16_UNORM | vk::Format::R16_SNORM => 1,
+        vk::Format::R16_SFLOAT | vk::Format::R32_SFLOAT | vk::Format::R8_SRGB => 1,
+        vk::Format::R8G8_UNORM | vk::Format::R8G8_SNORM | vk::Format::R8G8_SRGB => 2,
+        vk::Format::R16G16_UNORM | vk::Format::R16G16_SNORM => 2,
+        vk::Format::R16G16_SFLOAT | vk::Format::R32G32_SFLOAT => 2,
+        _ => 4,
+    }
+}

@@ -1,8 +1,8 @@
 //! Synthesis on Vulkan: recorded into the caller's command buffer.
 //!
 //! [`Gather`] takes a [`Warp`] between parallel eyes, [`AnyView`] a
-//! [`PoseWarp`] to a view in any pose near the source's. Both are a [`Pipeline`], and draw the
-//! same picture as on OpenGL, from the same shaders. A [`Composer`] makes an eye from the levels of a foveated view. [`Pipeline::new`], [`Pipeline::register_source`] and
+//! [`PoseWarp`] to a view in any pose near the source's. [`Motion`] makes the other eye's motion vectors. All are a
+//! [`Pipeline`], and draw the same picture as on OpenGL, from the same shaders. A [`Composer`] makes an eye from the levels of a foveated view. [`Pipeline::new`], [`Pipeline::register_source`] and
 //! [`Pipeline::register_target`] allocate and compile everything; [`Pipeline::record`] only records: it allocates
 //! nothing, submits nothing and waits for nothing.
 //!
@@ -63,7 +63,7 @@ use crate::synthesis::ArgumentError;
 use crate::synthesis::backend::{WarpKind, map_sizes};
 
 pub use composer::{ComposedFrame, Composer, InsetImage, LevelImage, LevelImages};
-pub use pipeline::{AnyView, Gather, Pipeline};
+pub use pipeline::{AnyView, Gather, Motion, Pipeline};
 
 /// Errors of creating a pipeline, of registering images, and of recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

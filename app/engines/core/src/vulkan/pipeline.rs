@@ -8,7 +8,7 @@ use ash::vk;
 use super::adapter::Adapter;
 use super::barriers::Barriers;
 use super::commands::{Commands, Labels};
-use super::formats::map_bytes;
+use super::formats::{components, map_bytes};
 use super::images::{self, Source, Target};
 use super::objects::Objects;
 use super::passes::{Passes, Recorder};
@@ -19,8 +19,9 @@ use super::{
     Frame, Host, ImageState, Options, PassTimes, SourceId, SourceImages, TargetId, TargetImages, Uses,
     VulkanError,
 };
-use crate::eyes::{PoseWarp, Warp};
-use crate::synthesis::backend::{Places, WarpKind, check_rectangle, check_size, map_sizes};
+use crate::eyes::{MotionWarp, PoseWarp, Warp};
+use crate::synthesis::ArgumentError;
+use crate::synthesis::backend::{Kind, Places, WarpKind, check_rectangle, check_size, map_sizes};
 
 /// Synthesis between parallel eyes: the march goes along the source's row.
 pub type Gather = Pipeline<Warp>;
@@ -28,7 +29,14 @@ pub type Gather = Pipeline<Warp>;
 /// Synthesis of a view in any pose near the source's: the march goes along a segment of any direction.
 pub type AnyView = Pipeline<PoseWarp>;
 
-/// The passes for a kind of warp: [`Gather`] or [`AnyView`]: tile bounds, tile spans, march.
+/// Synthesis of motion vectors between parallel eyes, for runtimes that make frames between those that are rendered. The
+/// source's colour is the vectors' image, R16G16B16A16_SFLOAT with three components in NDC
+/// ([`VectorSpace`](crate::eyes::VectorSpace)), with depth of the same size: that of the vectors that a runtime
+/// recommends, not that of the eye. The target receives vectors, and depth with [`Options::depth_format`]. Silhouettes
+/// are not blended, and a hole has its background's vector.
+pub type Motion = Pipeline<MotionWarp>;
+
+/// The passes for a kind of warp: [`Gather`], [`AnyView`] or [`Motion`]: tile bounds, tile spans, march.
 ///
 /// Call the methods from one thread at a time. All frames share the intermediate buffers, which are protected by
 /// barriers only: the commands must be executed in the order in which they were recorded, by queues of one family, one
@@ -108,6 +116,9 @@ impl<W: WarpKind> Pipeline<W> {
     /// released or the pipeline is dropped.
     pub unsafe fn register_source(&mut self, images: &SourceImages) -> Result<SourceId, VulkanError> {
         images::check_source(&self.adapter, images)?;
+        if W::KIND == Kind::Motion && components(images.color.format) < 3 {
+            return Err(ArgumentError::TwoComponents.into());
+        }
         // SAFETY: the caller's images are live, and outlive the objects, which are destroyed when the id is released.
         let objects = unsafe { Objects::new(&self.device) };
         let id = SourceId(self.next_id());

@@ -1,6 +1,6 @@
 //! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain spirv`.
 
-use crate::synthesis::backend::WarpKind;
+use crate::synthesis::backend::{Kind, WarpKind};
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
 pub(super) const COMPOSE: &[u8] = include_bytes!("spirv/compose.spv");
@@ -27,6 +27,12 @@ const GATHER: Shaders = Shaders {
     march_depth: include_bytes!("spirv/march-depth.spv"),
 };
 
+const MOTION: Shaders = Shaders {
+    march: include_bytes!("spirv/march-motion.spv"),
+    march_depth: include_bytes!("spirv/march-motion-depth.spv"),
+    ..GATHER
+};
+
 const ANY_VIEW: Shaders = Shaders {
     tiles: include_bytes!("spirv/any-view-tiles.spv"),
     spans: include_bytes!("spirv/any-view-spans.spv"),
@@ -37,7 +43,11 @@ const ANY_VIEW: Shaders = Shaders {
 
 impl Shaders {
     pub(super) fn of<W: WarpKind>() -> &'static Shaders {
-        if W::ANY_VIEW { &ANY_VIEW } else { &GATHER }
+        match W::KIND {
+            Kind::Gather => &GATHER,
+            Kind::Motion => &MOTION,
+            Kind::AnyView => &ANY_VIEW,
+        }
     }
 
     /// Returns the last pass.

@@ -1,10 +1,10 @@
-//! Any view on Vulkan: the same pictures and depth as on OpenGL.
+//! Any view and motion vectors on Vulkan: the same as on OpenGL.
 
-use crate::against_opengl::{Gl, assert_depth_equal, assert_equal, picture, pose_warps};
+use crate::against_opengl::{Gl, assert_depth_equal, assert_equal, motion_warps, picture, pose_warps};
 use crate::harness::{Rendering, with_gpu};
 use crate::{Setup, synthesize};
 use yoro::vulkan::ash::vk;
-use yoro::vulkan::{AnyView, ImageState, Options};
+use yoro::vulkan::{AnyView, ImageState, Motion, Options};
 
 #[test]
 fn any_view_is_that_of_opengl() {
@@ -65,5 +65,22 @@ fn any_view_of_parts_and_layers() {
         // SAFETY: everything is executed.
         let times = unsafe { any_view.pass_times() }.unwrap().unwrap();
         assert!(!times.march.is_zero() && !times.tiles.is_zero(), "{times:?}");
+    });
+}
+
+#[test]
+fn motion_is_that_of_opengl() {
+    let gl = Gl::open();
+    with_gpu(Rendering::Core, |gpu| {
+        for (i, (warp, range)) in motion_warps().into_iter().enumerate() {
+            let picture = picture(&warp, range, 90 + i as u64);
+            let setup = Setup { target_depth: Some(vk::Format::D32_SFLOAT), ..Setup::PLAIN };
+            // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
+            let mut motion = unsafe { Motion::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
+            let got = synthesize(gpu, &mut motion, &setup, &picture);
+            let want = gl.motion(&picture);
+            assert_equal(&got.rgba, &want.rgba, 4, &format!("{warp:?}"));
+            assert_depth_equal(&got.depth.unwrap(), &want.depth, &format!("{warp:?}"));
+        }
     });
 }

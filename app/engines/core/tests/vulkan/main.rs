@@ -482,6 +482,11 @@ fn mistakes_are_refused() {
                     .to_string()
                     .starts_with("the Vulkan device cannot use R8G8B8A8_UNORM as a source's depth")
             );
+            let two = gpu.image(vk::Format::R16G16_SFLOAT, warp.source_size, 1);
+            let vectors = SourceImages { color: sampled(&two), ..source };
+            let mut motion = yoro::vulkan::Motion::new(&gpu.host(), &options).unwrap();
+            let refused = motion.register_source(&vectors).unwrap_err();
+            assert_eq!(refused, VulkanError::Argument(ArgumentError::TwoComponents));
             let target = TargetImages::new(sampled(&target), warp.target_size);
             let with_depth = TargetImages { depth: Some(sampled(&depth)), ..target };
             assert!(matches!(gather.register_target(&with_depth), Err(VulkanError::OtherFormat { .. })));

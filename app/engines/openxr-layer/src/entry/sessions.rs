@@ -46,10 +46,12 @@ pub unsafe fn begin(live: &LiveSession, info: *const sys::SessionBeginInfo) -> X
     // SAFETY: the application's arguments.
     unsafe {
         let kind = (*info).primary_view_configuration_type;
-        if kind == ViewsOf::PRIMARY_STEREO && session.shrinks() {
+        let (two, four) = (ViewsOf::PRIMARY_STEREO, ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET);
+        if [two, four].contains(&kind) && session.shrinks() {
             let result = check(begin(session.handle, info))?;
-            session.begin(2);
-            say(format_args!("{name}: renders a tiny image for the {other} eye, which is synthesized"));
+            session.begin(if kind == two { 2 } else { 4 });
+            let images = if kind == two { "a tiny image" } else { "two tiny images" };
+            say(format_args!("{name}: renders {images} for the {other} eye, which is synthesized"));
             return Ok(result);
         }
         if kind != ViewsOf::PRIMARY_MONO || !session.offers_mono {

@@ -8,7 +8,7 @@ use sys::ViewConfigurationType as ViewsOf;
 use crate::dispatch::{XrResult, check};
 use crate::frame::projection;
 use crate::geometry::{xr_fov, xr_pose};
-use crate::instance::Instance;
+use crate::instance::{Instance, Part};
 use crate::objects::{self, LiveSession};
 
 /// Answers a call that asks for an array: writes its length and, if the capacity is not 0, its elements.
@@ -75,13 +75,17 @@ pub unsafe fn enumerate_views(
     unsafe {
         // The runtime fills in what the application has chained to its views.
         let room = if views.is_null() { 0 } else { capacity as usize };
-        let chains = |count: usize| {
-            [0, 1].map(|i| if room < count || i >= count { ptr::null_mut() } else { (*views.add(i)).next })
-        };
+        let chain =
+            |i: usize, count: usize| if room < count { ptr::null_mut() } else { (*views.add(i)).next };
         let own = match kind {
-            ViewsOf::PRIMARY_MONO if instance.offers(system) => vec![instance.view(system, chains(1)[0])?],
+            ViewsOf::PRIMARY_MONO if instance.offers(system) => vec![instance.view(system, chain(0, 1))?],
             ViewsOf::PRIMARY_STEREO if instance.settings.shrink && instance.offers(system) => {
-                instance.shrunk_views(system, chains(2))?.to_vec()
+                let chains = [0, 1].map(|i| chain(i, 2));
+                instance.shrunk_views(system, kind, &[Part::Eyes], chains)?.to_vec()
+            }
+            ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET if instance.shrinks_four(system) => {
+                let chains = [0, 1, 2, 3].map(|i| chain(i, 4));
+                instance.shrunk_views(system, kind, &Part::OF_FOUR, chains)?.to_vec()
             }
             _ => {
                 let next = instance.next.enumerate_view_configuration_views;
@@ -186,7 +190,8 @@ pub unsafe fn visibility_mask(
                     return Err(sys::Result::ERROR_VALIDATION_FAILURE);
                 }
             }
-            ViewsOf::PRIMARY_STEREO if session.shrinks() && view == dominant => {}
+            ViewsOf::PRIMARY_STEREO | ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET
+                if session.shrinks() && view % 2 == dominant => {}
             _ => return Ok(next(session.handle, kind, view, mask_kind, mask)),
         }
         // One eye may see what is hidden from the other, so nothing is hidden in the one view.
@@ -220,10 +225,20 @@ pub unsafe fn locate(
                 let own = &mut *views.add(settings.dominant.index());
                 (own.pose, own.fov) = (xr_pose(pose), xr_fov(frustum));
             }
+            let four = asked.view_configuration_type == ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET;
+            if four && session.views() == 4 && capacity >= 4 && !views.is_null() {
+                let all = [0, 1, 2, 3].map(|i| *views.add(i));
+                let offered = session.offer_two_of_four(&all).into_iter().flatten();
+                for (i, (pose, frustum)) in offered.enumerate() {
+                    let own = &mut *views.add(2 * i + settings.dominant.index());
+                    (own.pose, own.fov) = (xr_pose(pose), xr_fov(frustum));
+                }
+            }
             return Ok(result);
         }
         let state = state.as_mut().ok_or(sys::Result::ERROR_VALIDATION_FAILURE)?;
         let next = views.as_ref().filter(|_| capacity > 0).map_or(ptr::null_mut(), |view| view.next);
+        asked.view_configuration_type = ViewsOf::PRIMARY_STEREO;
         let located = session.locate(&asked, state, next)?;
         let (pose, frustum) = session.offer(&located);
         let view = sys::View { ty: sys::View::TYPE, next, pose: xr_pose(pose), fov: xr_fov(frustum) };

@@ -1,8 +1,10 @@
-//! xrEndFrame: turns a projection layer of one view into one of two.
+//! xrEndFrame: turns a projection layer of one view into one of two, and one of which half of the views are tiny into one
+//! of whole views.
 
 #[cfg(feature = "capture")]
 mod capture;
 mod chain;
+mod level;
 mod rewrite;
 mod statistics;
 mod synthesized;
@@ -15,40 +17,27 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use openxr_sys as sys;
+use smallvec::SmallVec;
 
-use crate::binding::Binding;
 use crate::dispatch::XrResult;
 use crate::geometry::{Offer, Rectangle, Split, Submitted, SubmittedDepth, frustum, pose};
 use crate::mirror;
 use crate::reason::Reason;
 use crate::session::Session;
 use crate::swapchain::{Content, Swapchain};
-use crate::synthesizer::{Image, Job, Synthesizer};
+use crate::synthesizer::Image;
 use crate::{lock, say};
 pub use chain::projection;
-use chain::{Layers, depth_of, held, is_upside_down, rectangle};
+use chain::{Layers, held, rectangle};
+use level::Level;
 use rewrite::{Eyes, Rewritten};
 use statistics::{Report, Statistics};
-use synthesized::{Key, Synthesized};
-use target::{Acquired, Target};
-
-/// Indices of colour and depth.
-const COLOR: usize = 0;
-const DEPTH: usize = 1;
-const ATTACHMENTS: [sys::SwapchainUsageFlags; 2] =
-    [sys::SwapchainUsageFlags::COLOR_ATTACHMENT, sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT];
 
 /// The state that xrEndFrame keeps between frames.
 #[derive(Default)]
 pub struct Frames {
-    /// Created in the first frame that needs it. An error is final, except [`Reason::NotCurrent`].
-    synthesizer: Option<Result<Box<dyn Synthesizer>, Reason>>,
-    /// Colour of the other eye, and its depth if the runtime accepts depth.
-    targets: [Option<Target>; 2],
-    /// Depth formats for which no target can be created.
-    without_depth: Vec<i64>,
-    /// The last synthesized view, while the targets still show it.
-    last: Option<Synthesized>,
+    /// One for each rendered view, in the order of the views.
+    levels: [Level; 2],
     /// The kinds of reasons that have been logged.
     told: HashSet<Discriminant<Reason>>,
     statistics: Statistics,
@@ -134,8 +123,8 @@ pub unsafe fn end_frame(
         lock(frames).refused(session, Reason::Runtime("xrEndFrame", result));
         let mut rewritten = Rewritten::default();
         // SAFETY: the application's layers.
-        for (layer, view) in unsafe { one_view_layers(session, layers) } {
-            rewritten.push(layer, Eyes::same(view));
+        for (layer, views) in unsafe { rendered_views(session, layers) } {
+            rewritten.push(layer, views.map(Eyes::same).collect());
         }
         result = end(&mut rewritten);
     }
@@ -155,22 +144,26 @@ fn is_about_layers(result: sys::Result) -> bool {
     .contains(&result)
 }
 
-/// Returns the layers to rewrite. Each comes with its one view, or with the one of its two views that is not tiny.
+/// Returns the layers to rewrite. Each comes with its one view, or with those of its views that are not tiny.
 ///
 /// # Safety
 /// The layers are those of a call of xrEndFrame.
-unsafe fn one_view_layers<'a>(
+unsafe fn rendered_views<'a>(
     session: &Session,
     layers: Layers<'a>,
-) -> impl Iterator<Item = (&'a sys::CompositionLayerProjection, &'a sys::CompositionLayerProjectionView)> {
-    let views = session.views();
-    let index = if views == 2 { session.instance.settings.dominant.index() } else { 0 };
+) -> impl Iterator<
+    Item = (
+        &'a sys::CompositionLayerProjection,
+        impl Iterator<Item = &'a sys::CompositionLayerProjectionView> + Clone,
+    ),
+> {
+    let (views, parts) = (session.views(), session.parts().len());
+    let first = if views == 1 { 0 } else { session.instance.settings.dominant.index() };
     layers.iter().filter_map(move |&layer| {
         // SAFETY: the application's layers. `views` is not 0 in a session that is rewritten.
-        unsafe {
-            let layer = projection(layer, views)?;
-            Some((layer, &*layer.views.add(index)))
-        }
+        let layer = unsafe { projection(layer, views) }?;
+        // SAFETY: the layer has this many views.
+        Some((layer, (0..parts).map(move |part| unsafe { &*layer.views.add(first + 2 * part) })))
     })
 }
 
@@ -225,13 +218,16 @@ impl Frames {
         }
         let mut done = false;
         // SAFETY: the application's layers.
-        for (layer, view) in unsafe { one_view_layers(session, layers) } {
-            let eyes = if done {
+        for (layer, views) in unsafe { rendered_views(session, layers) } {
+            let eyes: Result<SmallVec<[Eyes; 2]>, Reason> = if done {
                 Err(Reason::Another)
             } else {
-                // SAFETY: a submitted view.
-                let work = AssertUnwindSafe(|| unsafe { self.synthesize(session, swapchains, layer, view) });
-                catch_unwind(work).unwrap_or(Err(Reason::Panic))
+                let parts = views.clone().enumerate();
+                // SAFETY: submitted views.
+                let each = parts
+                    .map(|(part, view)| unsafe { self.synthesize(session, part, swapchains, layer, view) });
+                // All or none: the views of four that belong to one eye have one pose.
+                catch_unwind(AssertUnwindSafe(|| each.collect())).unwrap_or(Err(Reason::Panic))
             };
             let eyes = match eyes {
                 Ok(eyes) => {
@@ -241,7 +237,7 @@ impl Frames {
                 }
                 Err(reason) => {
                     self.fall_back(session, reason);
-                    Eyes::same(view)
+                    views.map(Eyes::same).collect()
                 }
             };
             rewritten.push(layer, eyes);
@@ -249,153 +245,37 @@ impl Frames {
         done
     }
 
-    /// Returns the two views that replace one.
+    /// Returns the two views that replace one, which is the layer's first or second rendered view.
     ///
     /// # Safety
     /// The view belongs to this submitted layer.
     unsafe fn synthesize(
         &mut self,
         session: &Session,
+        index: usize,
         swapchains: &[Arc<Swapchain>],
         layer: &sys::CompositionLayerProjection,
         view: &sys::CompositionLayerProjectionView,
     ) -> Result<Eyes, Reason> {
-        // SAFETY: a submitted view.
-        let info = unsafe { depth_of(view) }.ok_or(Reason::NoDepth)?;
-        // SAFETY: a submitted layer.
-        let upside_down = unsafe { is_upside_down(layer) };
-        let key = Key::new(swapchains, view, info, upside_down);
-        if let Some(last) = self.last.as_ref().filter(|last| last.key == key) {
-            return Ok(last.again(view, info));
-        }
-        self.last = None;
-        let binding = session.binding.ok_or(Reason::NoGraphics)?;
-        let offer = lock(&session.offer).ok_or(Reason::NoViews)?.map_err(Reason::Views)?;
-        let source = source(swapchains, view, info, upside_down)?;
-        let split = split_source(&offer, &source)?;
-        self.synthesizer(binding)?;
-        let [color, depth] = self.acquire(session, &binding, source.contents)?;
-        let color = color.ok_or(Reason::NoGraphics)?;
-        let from_top = binding.rows_from_top();
-        let crop = source.part.part(split.crop, from_top);
-        let job = Job {
-            color: source.images[COLOR],
-            depth: source.images[DEPTH],
-            source: source.part.part(split.source, from_top),
-            warp: &split.warp,
-            target: color.image,
-            target_depth: depth.map(|depth| depth.image),
-        };
-        #[cfg(feature = "capture")]
-        let captures = self.statistics.frames == capture::FRAME;
-        let synthesizer = self.synthesizer(binding)?;
-        // SAFETY: the runtime owns none of these images: releases of the source's are held back, the target's were
-        // acquired. In xrEndFrame the application lets nobody else use the queue (XR_KHR_vulkan_enable) or the context.
-        let result = unsafe { synthesizer.synthesize(&job) };
-        #[cfg(feature = "capture")]
-        if result.is_ok() && captures {
-            let dominant = offer.eyes.dominant;
-            let whole = Rectangle { origin: [0; 2], size: split.crop.size };
-            // SAFETY: as above.
-            unsafe {
-                capture::write(session, synthesizer, "rendered", job.color, source.part);
-                capture::write(session, synthesizer, dominant.name(), job.color, crop);
-                capture::write(session, synthesizer, dominant.other().name(), job.target, whole);
-            }
-        }
-        // The images are released even after an error, and then not shown. A target that cannot be released is useless.
-        let released = depth.map_or(Ok(()), |depth| depth.release(session));
-        if let Err(reason) = color.release(session).and(released) {
-            self.drop_target(session, COLOR);
-            self.drop_target(session, DEPTH);
-            return Err(reason);
-        }
-        // The driver may not be able to write this format as depth.
-        if let (Err(reason @ (Reason::Gl(_) | Reason::Synthesis(_))), Some(_)) = (&result, depth) {
-            self.give_up_depth(session, source.contents[DEPTH].format, reason);
-        }
-        if let Some(time) = result? {
+        let part = session.parts()[index];
+        // SAFETY: same contract.
+        let (eyes, time) = unsafe {
+            self.levels[index].synthesize(
+                session,
+                part,
+                swapchains,
+                layer,
+                view,
+                #[cfg(feature = "capture")]
+                (self.statistics.frames == capture::FRAME),
+            )
+        }?;
+        if let Some(time) = time {
+            // Both syntheses of four views count as one.
             self.statistics.gpu += time;
-            self.statistics.timed += 1;
+            self.statistics.timed += u64::from(index == 0);
         }
-        let synthesized = Synthesized { key, split, crop, dominant: offer.eyes.dominant, color, depth };
-        let eyes = synthesized.eyes(view, info);
-        self.last = Some(synthesized);
         Ok(eyes)
-    }
-
-    /// Returns the pipeline, and creates it if necessary.
-    fn synthesizer(&mut self, binding: Binding) -> Result<&mut dyn Synthesizer, Reason> {
-        // The context may have become free.
-        self.synthesizer.take_if(|made| matches!(made, Err(Reason::NotCurrent)));
-        // SAFETY: the application keeps its device or context until the session is destroyed, and `end` drops the
-        // pipeline before that.
-        match self.synthesizer.get_or_insert_with(|| unsafe { binding.synthesizer() }) {
-            Ok(synthesizer) => Ok(synthesizer.as_mut()),
-            Err(reason) => Err(reason.clone()),
-        }
-    }
-
-    /// Acquires images for the other eye, in swapchains like the application's: colour, and depth if the runtime
-    /// accepts it.
-    fn acquire(
-        &mut self,
-        session: &Session,
-        binding: &Binding,
-        [color, depth]: [&Content; 2],
-    ) -> Result<[Option<Acquired>; 2], Reason> {
-        self.fit(session, binding, COLOR, color)?;
-        let mut takes_depth = session.instance.takes_depth && !self.without_depth.contains(&depth.format);
-        if takes_depth && let Err(reason) = self.fit(session, binding, DEPTH, depth) {
-            self.give_up_depth(session, depth.format, &reason);
-            takes_depth = false;
-        }
-        let mut acquired = [None; 2];
-        for which in [COLOR, DEPTH].into_iter().filter(|which| *which == COLOR || takes_depth) {
-            let target = self.targets[which].as_mut().map(|target| target.acquire(session));
-            acquired[which] = match target.transpose() {
-                Ok(image) => image,
-                Err(reason) => {
-                    if let Some(color) = acquired[COLOR]
-                        && color.release(session).is_err()
-                    {
-                        self.drop_target(session, COLOR);
-                    }
-                    return Err(reason);
-                }
-            };
-        }
-        Ok(acquired)
-    }
-
-    /// Creates a target like the application's swapchain, unless the existing one fits.
-    fn fit(
-        &mut self,
-        session: &Session,
-        binding: &Binding,
-        which: usize,
-        like: &Content,
-    ) -> Result<(), Reason> {
-        if !self.targets[which].as_ref().is_some_and(|target| target.fits(like)) {
-            self.drop_target(session, which);
-            self.targets[which] = Some(Target::new(session, binding, ATTACHMENTS[which], like)?);
-        }
-        Ok(())
-    }
-
-    /// Stops submitting depth of a format to the runtime. The layer still needs the application's depth.
-    fn give_up_depth(&mut self, session: &Session, format: i64, reason: &Reason) {
-        self.without_depth.push(format);
-        self.drop_target(session, DEPTH);
-        let application = &session.instance.application;
-        say(format_args!("{application}: depth of format {format} does not go on to the runtime: {reason}"));
-    }
-
-    fn drop_target(&mut self, session: &Session, which: usize) {
-        if let Some(old) = self.targets[which].take() {
-            self.forget(&old.content);
-            old.destroy(session);
-        }
     }
 
     /// Counts a layer that is shown unchanged to both eyes. Logs each kind of reason once.
@@ -408,22 +288,19 @@ impl Frames {
 
     /// Counts a synthesized layer that the runtime refused.
     fn refused(&mut self, session: &Session, reason: Reason) {
-        self.last = None;
+        self.levels.iter_mut().for_each(|level| level.last = None);
         self.statistics.synthesized -= 1;
         self.fall_back(session, reason);
     }
 
     /// Forgets images that are about to be destroyed.
     pub fn forget(&mut self, content: &Content) {
-        self.last = None;
-        if let Some(Ok(synthesizer)) = &mut self.synthesizer {
-            synthesizer.forget(&content.images);
-        }
+        self.levels.iter_mut().for_each(|level| level.forget(content));
     }
 
     /// Ends the frames of a session that is about to be destroyed. The runtime destroys its swapchains with it.
     pub fn end(&mut self, session: &Session) {
-        self.synthesizer = None;
+        self.levels = Default::default();
         let Statistics { frames, synthesized, fallbacks, .. } = self.statistics;
         if session.views() > 0 {
             say(format_args!(

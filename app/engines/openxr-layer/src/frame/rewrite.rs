@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 
 use super::chain::{Layers, projection};
 
-/// The two views of a layer, and their depth if it is passed on to the runtime.
+/// Two views that replace one, and their depth if it is passed on to the runtime.
 pub struct Eyes {
     pub views: [sys::CompositionLayerProjectionView; 2],
     pub depths: Option<[sys::CompositionLayerDepthInfoKHR; 2]>,
@@ -23,16 +23,21 @@ impl Eyes {
 /// [`Rewritten::link`], whose borrow ensures that. Usual numbers of layers need no allocation.
 #[derive(Default)]
 pub struct Rewritten {
-    eyes: SmallVec<[Eyes; 2]>,
+    /// The views of each layer, in the runtime's order, and their depth.
+    views: SmallVec<[SmallVec<[sys::CompositionLayerProjectionView; 4]>; 2]>,
+    depths: SmallVec<[SmallVec<[Option<sys::CompositionLayerDepthInfoKHR>; 4]>; 2]>,
     projections: SmallVec<[sys::CompositionLayerProjection; 2]>,
     layers: SmallVec<[*const sys::CompositionLayerBaseHeader; 16]>,
 }
 
 impl Rewritten {
-    /// Adds the two views for the next layer to be rewritten.
-    pub fn push(&mut self, layer: &sys::CompositionLayerProjection, eyes: Eyes) {
-        self.eyes.push(eyes);
-        self.projections.push(sys::CompositionLayerProjection { view_count: 2, ..*layer });
+    /// Adds the views for the next layer to be rewritten: two for each of the application's rendered views.
+    pub fn push(&mut self, layer: &sys::CompositionLayerProjection, eyes: SmallVec<[Eyes; 2]>) {
+        self.views.push(eyes.iter().flat_map(|eyes| eyes.views).collect());
+        let depths = |eyes: &Eyes| eyes.depths.map_or([None; 2], |depths| depths.map(Some));
+        self.depths.push(eyes.iter().flat_map(depths).collect());
+        self.projections
+            .push(sys::CompositionLayerProjection { view_count: 2 * eyes.len() as u32, ..*layer });
     }
 
     /// Returns the application's layers, in which the rewritten layers replace those with this number of views.
@@ -41,11 +46,13 @@ impl Rewritten {
     /// The layers are those of a call of xrEndFrame, and all of them with this number of views were pushed in their
     /// order.
     pub unsafe fn link(&mut self, layers: Layers, views: usize) -> Layers<'_> {
-        for (projection, eyes) in self.projections.iter_mut().zip(&mut self.eyes) {
-            for (view, depth) in eyes.views.iter_mut().zip(eyes.depths.iter().flatten()) {
-                view.next = std::ptr::from_ref(depth).cast();
+        for (projection, (views, depths)) in
+            self.projections.iter_mut().zip(self.views.iter_mut().zip(&self.depths))
+        {
+            for (view, depth) in views.iter_mut().zip(depths) {
+                view.next = depth.as_ref().map_or(view.next, |depth| std::ptr::from_ref(depth).cast());
             }
-            projection.views = eyes.views.as_ptr();
+            projection.views = views.as_ptr();
         }
         let mut rewritten = self.projections.iter();
         self.layers.extend(layers.iter().map(|&layer| {

@@ -384,12 +384,12 @@ impl<'a> Client<'a> {
     pub fn sizes(&self) -> Outcome<Vec<[u32; 2]>> {
         // SAFETY: plain data; the type is set below.
         let empty: sys::ViewConfigurationView = unsafe { std::mem::zeroed() };
-        let mut views = [sys::ViewConfigurationView { ty: sys::ViewConfigurationView::TYPE, ..empty }; 2];
+        let mut views = [sys::ViewConfigurationView { ty: sys::ViewConfigurationView::TYPE, ..empty }; 4];
         let mut count = 0;
         let call = self.xr.enumerate_view_configuration_views;
         // SAFETY: room for as many elements as stated.
         let result =
-            unsafe { call(self.instance, self.system, self.views, 2, &mut count, views.as_mut_ptr()) };
+            unsafe { call(self.instance, self.system, self.views, 4, &mut count, views.as_mut_ptr()) };
         check("xrEnumerateViewConfigurationViews", result)?;
         let size = |view: &sys::ViewConfigurationView| {
             [view.recommended_image_rect_width, view.recommended_image_rect_height]
@@ -565,11 +565,11 @@ impl<'a> Client<'a> {
     }
 
     /// Locates the views of a frame, as many as the configuration has.
-    pub fn locate(&mut self, frame: Frame) -> Outcome<[Option<View>; 2]> {
+    pub fn locate(&mut self, frame: Frame) -> Outcome<[Option<View>; 4]> {
         let fov = sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 };
-        let mut views = [sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov }; 2];
+        let mut views = [sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov }; 4];
         let count = self.locate_views(frame, &mut views)?;
-        let mut located = [None; 2];
+        let mut located = [None; 4];
         for (place, view) in located.iter_mut().zip(&views[..count]) {
             let (p, q, f) = (view.pose.position, view.pose.orientation, view.fov);
             *place = Some(View {
@@ -689,12 +689,12 @@ impl<'a> Client<'a> {
 
     /// Ends a frame with these layers.
     pub fn end_frame(&mut self, frame: Frame, layers: &[Layer]) -> Outcome<()> {
-        // Eight layers of two views are enough. They are on the stack, because the tests count the layer's allocations.
+        // Eight layers of four views are enough. They are on the stack, because the tests count the layer's allocations.
         // SAFETY: plain data; what is not filled is not used.
         let (mut depths, mut views, mut projections, mut quads) = unsafe {
             (
-                std::mem::zeroed::<[[sys::CompositionLayerDepthInfoKHR; 2]; 8]>(),
-                std::mem::zeroed::<[[sys::CompositionLayerProjectionView; 2]; 8]>(),
+                std::mem::zeroed::<[[sys::CompositionLayerDepthInfoKHR; 4]; 8]>(),
+                std::mem::zeroed::<[[sys::CompositionLayerProjectionView; 4]; 8]>(),
                 std::mem::zeroed::<[sys::CompositionLayerProjection; 8]>(),
                 std::mem::zeroed::<[sys::CompositionLayerQuad; 8]>(),
             )

@@ -73,6 +73,13 @@ impl Chains {
         Ok(Chains { color, depth, part })
     }
 
+    /// Creates plain swapchains of a size.
+    pub fn of_size(client: &Client, size: [u32; 2]) -> Outcome<Chains> {
+        let (color, depth) = (client.chain(SRGB, size, 1)?, client.chain(D32, size, 1)?);
+        let part = Part { chain: color.handle, origin: [0; 2], size, layer: 0 };
+        Ok(Chains { color, depth, part })
+    }
+
     pub fn depth_part(&self) -> Part {
         Part { chain: self.depth.handle, ..self.part }
     }

@@ -4,7 +4,7 @@ use openxr_sys as sys;
 use sys::{Handle as _, ViewConfigurationType as ViewsOf};
 use yoro::vulkan::ash::vk;
 use yoro_openxr_stub::log;
-use yoro_openxr_stub::script::Script;
+use yoro_openxr_stub::script::{Insets, Script};
 
 use crate::checks::{
     assert_counts, assert_depth, assert_own_eyes, assert_seen, assert_sessions, assert_synthesized,
@@ -145,20 +145,17 @@ fn shrink_replaces_the_tiny_view() {
             client.poll().unwrap();
             let sizes = client.sizes().unwrap();
             assert!(sizes[0] == [16; 2] && sizes[1][0] > 128 && sizes[1][1] == 128, "{sizes:?}");
-            let (color, depth) =
-                (client.chain(SRGB, sizes[1], 1).unwrap(), client.chain(D32, sizes[1], 1).unwrap());
-            let part = Part { chain: color.handle, origin: [0; 2], size: sizes[1], layer: 0 };
-            let own = Chains { color, depth, part };
+            let own = Chains::of_size(&client, sizes[1]).unwrap();
             let tiny = client.chain(SRGB, sizes[0], 1).unwrap();
-            let part = Part { chain: tiny.handle, size: sizes[0], ..part };
+            let part = Part { chain: tiny.handle, size: sizes[0], ..own.part };
             for _ in 0..3 {
                 client.poll().unwrap();
                 let frame = client.begin_frame().unwrap();
-                let views = client.locate(frame).unwrap().map(Option::unwrap);
-                let rendered = render(&mut client, &own, &habits, views[1]).unwrap();
+                let views = client.locate(frame).unwrap();
+                let rendered = render(&mut client, &own, &habits, views[1].unwrap()).unwrap();
                 client.acquire(&tiny).unwrap();
                 client.release(&tiny).unwrap();
-                let unused = Submitted { view: views[0], color: part, depth: None };
+                let unused = Submitted { view: views[0].unwrap(), color: part, depth: None };
                 client.end_frame(frame, &[Layer::Projection(vec![unused, rendered])]).unwrap();
             }
             client.destroy_session().unwrap();
@@ -168,6 +165,57 @@ fn shrink_replaces_the_tiny_view() {
         assert_own_eyes(&seen, &script(), 0.0, "a tiny view");
         assert_seen(&seen, &habits, "a tiny view");
         assert_depth(&seen, &habits, "a tiny view");
+    });
+}
+
+/// With `shrink`, an application that begins with four views renders two of them tiny, and the insets follow the gaze.
+#[test]
+fn shrink_replaces_the_two_tiny_views_of_four() {
+    with_gpu(|gpu| {
+        for (what, cant_degrees) in [("two of four", 0.0), ("two of four that are canted", 5.0)] {
+            let habits = Habits { name: "shrink", ..Habits::PLAIN };
+            // At last the insets are in the corner of the eyes' views.
+            let gaze = vec![(0, [0.0, 0.0]), (4, [18.0, -9.0]), (6, [60.0, 20.0])];
+            let insets = Some(Insets { size: [96; 2], radius_degrees: 15.0, gaze });
+            let mut script = Script { insets, ..script() };
+            script.eyes.iter_mut().for_each(|eye| eye.cant_degrees = cant_degrees);
+            let seen = watched(script, || {
+                let mut client = Client::new(gpu, habits.name, &[DEPTH, c"XR_VARJO_quad_views"]).unwrap();
+                client.views = ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET;
+                client.create_session().unwrap();
+                client.poll().unwrap();
+                let sizes = client.sizes().unwrap();
+                assert_eq!([sizes[0], sizes[2]], [[16; 2]; 2], "{what}");
+                assert!(sizes[1][0] > 128 && sizes[1][1] >= 128, "{what}: {sizes:?}");
+                assert!(sizes[3][0] > 96 && sizes[3][1] >= 96, "{what}: {sizes:?}");
+                let chains: Vec<Chains> =
+                    sizes.iter().map(|size| Chains::of_size(&client, *size).unwrap()).collect();
+                for _ in 0..8 {
+                    client.poll().unwrap();
+                    let frame = client.begin_frame().unwrap();
+                    let views = client.locate(frame).unwrap().map(Option::unwrap).into_iter();
+                    let all = views
+                        .zip(&chains)
+                        .map(|(view, chains)| render(&mut client, chains, &habits, view).unwrap())
+                        .collect();
+                    client.end_frame(frame, &[Layer::Projection(all)]).unwrap();
+                }
+                client.destroy_session().unwrap();
+            });
+            assert_counts(&seen, &[[8, 0]], what);
+            assert_eq!(seen.said("renders two tiny images for the left eye"), 1, "{what}: {}", seen.said);
+            let views = seen.views();
+            assert_eq!(views.len(), 4, "{what}");
+            for (i, view) in views.iter().enumerate() {
+                let quality = psnr(&seen.picture(i), &truth(view, 1));
+                println!("{what}: view {i}: {:?}: {quality:.1} dB", view.fov_degrees);
+                assert!(quality > [31.0, 45.0][i % 2], "{what}: view {i}: {quality} dB");
+            }
+            assert_depth(&seen, &habits, what);
+            let gazes: Vec<f32> =
+                seen.frames().iter().map(|layers| views_of(layers)[3].fov_degrees[0]).collect();
+            assert!(gazes.windows(2).filter(|two| two[0] < two[1]).count() >= 5, "{what}: {gazes:?}");
+        }
     });
 }
 

@@ -1,9 +1,9 @@
-//! Any view has the same colour and depth as on OpenGL.
+//! Any view and motion vectors have the same colour and depth as on OpenGL.
 
-use yoro_wgpu::AnyView;
 use yoro_wgpu::wgpu::TextureFormat;
+use yoro_wgpu::{AnyView, Motion};
 
-use crate::against_opengl::{Gl, assert_depth_equal, assert_equal, picture, pose_warps};
+use crate::against_opengl::{Gl, assert_depth_equal, assert_equal, motion_warps, picture, pose_warps};
 use crate::harness::with_gpus;
 use crate::{Setup, synthesize};
 
@@ -40,6 +40,29 @@ fn any_view_is_that_of_opengl() {
                 assert_equal(&got.rgba, &want.rgba, 4, &what);
                 assert_depth_equal(&got.depth.unwrap(), &want.depth, &what);
             }
+        }
+    });
+}
+
+#[test]
+fn motion_is_that_of_opengl() {
+    let gl = Gl::open();
+    let pictures: Vec<_> = (motion_warps().into_iter().zip(90..))
+        .map(|((warp, range), seed)| {
+            let picture = picture(&warp, range, seed);
+            (gl.motion(&picture), picture)
+        })
+        .collect();
+    drop(gl);
+    let setup = Setup { target_depth: Some(TextureFormat::Depth32Float), ..Setup::PLAIN };
+    with_gpus(|gpu| {
+        let mut motion = Motion::new(&gpu.device, &setup.options()).unwrap();
+        for (want, picture) in &pictures {
+            let setup = setup.on(gpu);
+            let got = synthesize(gpu, &mut motion, &setup, picture);
+            let what = format!("{}, {:?}", gpu.name, picture.warp);
+            assert_equal(&got.rgba, &want.rgba, 4, &what);
+            assert_depth_equal(&got.depth.unwrap(), &want.depth, &what);
         }
     });
 }

@@ -29,6 +29,8 @@ pub enum Measure {
     Patchers,
     /// One render shown at another pose.
     Reprojection(Displaced),
+    /// The frame between two renders, at 72 frames per second.
+    HalfRate(Motion),
     /// A stream whose frames are shown this number of frames later, at 72 frames per second.
     Stream(usize),
     /// Instructions that `gather` executes: an estimate for a GPU that is not available here.
@@ -93,7 +95,7 @@ impl Job {
         if let Measure::Stream(_) = self.measure {
             return (self.frames * 3 * STREAM_QUANTIZERS.len()) as u64;
         }
-        if let Measure::Executed(_) | Measure::Reprojection(_) = self.measure {
+        if let Measure::Executed(_) | Measure::Reprojection(_) | Measure::HalfRate(_) = self.measure {
             return self.frames as u64;
         }
         if self.measure == Measure::WholeFrames {

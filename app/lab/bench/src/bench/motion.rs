@@ -11,6 +11,12 @@ pub enum Motion {
     Sway,
     /// Walking along the camera path at 1.35 m/s.
     Walk,
+    /// Not moving.
+    Still,
+    /// Turning to the left at 60 degrees per second, about a neck 10 cm behind the eyes.
+    Turn,
+    /// Leaning forwards and back by 20 cm, with a period of 1.5 seconds: up to 0.84 m/s.
+    Reach,
 }
 
 impl Motion {
@@ -19,17 +25,31 @@ impl Motion {
         match self {
             Motion::Sway => "sway",
             Motion::Walk => "walk",
+            Motion::Still => "still",
+            Motion::Turn => "turn",
+            Motion::Reach => "reach",
         }
     }
 
     /// Returns the pose after a time in seconds of a head that was at rest before; `None` for a walking head.
     pub(super) fn pose(self, from: Pose, seconds: f32) -> Option<Pose> {
-        if self == Motion::Walk {
-            return None;
+        use std::f32::consts::{PI, TAU};
+        match self {
+            Motion::Walk => None,
+            Motion::Still => Some(from),
+            Motion::Sway => {
+                let wave = (PI * seconds).sin();
+                let moved = from.translated_local(Vec3::X * (0.032 * wave));
+                let turn = Quat::from_rotation_y(-(9.5 * wave).to_radians());
+                Some(Pose { orientation: turn * moved.orientation, ..moved })
+            }
+            Motion::Turn => {
+                let neck = from.translated_local(Vec3::Z * 0.1);
+                let turn = Quat::from_rotation_y((60.0 * seconds - 20.0).to_radians());
+                let turned = Pose { orientation: turn * neck.orientation, ..neck };
+                Some(turned.translated_local(Vec3::NEG_Z * 0.1))
+            }
+            Motion::Reach => Some(from.translated_local(Vec3::NEG_Z * (0.2 * (TAU * seconds / 1.5).sin()))),
         }
-        let wave = (std::f32::consts::PI * seconds).sin();
-        let moved = from.translated_local(Vec3::X * (0.032 * wave));
-        let turn = Quat::from_rotation_y(-(9.5 * wave).to_radians());
-        Some(Pose { orientation: turn * moved.orientation, ..moved })
     }
 }

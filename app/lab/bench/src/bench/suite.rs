@@ -66,6 +66,7 @@ suites! {
     Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
+    HalfRate "half-rate" "Quality and time of the frame between two renders: by a runtime from both eyes' motion or from one eye's, by depth alone, and by yoro",
     Stream "stream" "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs, and with --frame whole frames on six, none of which need be here",
 }
@@ -107,6 +108,8 @@ const SIZES: [usize; 2] = [9, 5];
 const FEW_LIGHTS: usize = 4;
 /// The number of frames of the suite `flicker`, and in the short form.
 const FLICKER_FRAMES: [usize; 2] = [12, 4];
+/// The scenes of the suite `half-rate`: those with people who move.
+const MOVING_SCENES: [&str; 2] = ["talk", "stage"];
 /// The scenes of the suite `stream`.
 const STREAM_SCENES: [&str; 3] = ["talk", "street", "atrium"];
 /// The numbers of frames by which the suite `stream` shows frames late, at 72 per second: at once, after 28 and 69 ms.
@@ -180,6 +183,7 @@ impl Choices {
             Suite::Reprojection => {
                 self.reprojection(sweep(Measure::Reprojection(Displaced::Canted), Vec::new()))
             }
+            Suite::HalfRate => self.half_rate(sweep(Measure::HalfRate(Motion::Still), Vec::new())),
             Suite::Stream => self.stream(sweep(Measure::Stream(0), Vec::new())),
             Suite::ShaderCost if self.whole_frames => {
                 self.whole_frames(sweep(Measure::WholeFrames, vec![Contender::CONVENTIONAL]), &every)
@@ -252,6 +256,17 @@ impl Choices {
                 Displaced::Canted => "canted eyes".to_owned(),
                 Displaced::Late(motion, frames) => format!("{}, {frames} late", motion.name()),
             });
+        })
+    }
+
+    fn half_rate(&self, sweep: Sweep) -> anyhow::Result<Vec<Job>> {
+        let motions = [Motion::Still, Motion::Walk, Motion::Turn, Motion::Reach];
+        let scenes = if self.quick { &MOVING_SCENES[..1] } else { &MOVING_SCENES };
+        sweep.over(self.scenes(scenes), motions, |job, motion| {
+            // Ways of making a frame take part, not methods.
+            job.contenders.clear();
+            job.measure = Measure::HalfRate(motion);
+            job.conditions.label = Some(motion.name().to_owned());
         })
     }
 

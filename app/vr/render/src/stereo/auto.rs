@@ -59,8 +59,8 @@ impl SelectedMethod {
         let named = |method| super::create(gl, method, settings, options).map(Kind::Named);
         let kind = match choice {
             MethodChoice::Named(method) => named(method)?,
-            // Two renders cannot show a frame again.
-            MethodChoice::Auto if options.render_rate.is_some() => named(Method::Synthesized)?,
+            // Turns of two methods would need renders of both.
+            MethodChoice::Auto if options.half_rate => named(Method::Synthesized)?,
             MethodChoice::Auto => Kind::Auto(Box::new(Auto::new(gl, settings, options)?)),
         };
         Ok(SelectedMethod {
@@ -114,7 +114,10 @@ impl SelectedMethod {
     fn both(&mut self) -> Result<&mut dyn StereoMethod, GlError> {
         let made = match self.both.take() {
             Some(made) => made,
-            None => super::create(&self.gl, Method::Conventional, &self.settings, &self.options)?,
+            None => {
+                let options = StereoOptions { half_rate: false, ..self.options };
+                super::create(&self.gl, Method::Conventional, &self.settings, &options)?
+            }
         };
         Ok(self.both.insert(made).as_mut())
     }
@@ -151,16 +154,16 @@ impl StereoMethod for SelectedMethod {
         self.both()?.render_to(renderer, scene, pair, to)
     }
 
-    fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<bool, StereoError> {
+    fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2], ahead: f32) -> Result<bool, StereoError> {
         if self.is_comparing || self.unfit.is_some() || unfit(self.method, pair).is_some() {
             return Ok(false);
         }
-        self.chosen().show_again(pair, to)
+        self.chosen().show_again(pair, to, ahead)
     }
 
     fn report(&self) -> MethodReport {
         if let Some(reason) = &self.unfit {
-            return MethodReport { guard_band: None, substituted: Some(Substituted::Eyes(*reason)) };
+            return MethodReport { substituted: Some(Substituted::Eyes(*reason)), ..MethodReport::default() };
         }
         match &self.kind {
             Kind::Named(method) => method.report(),

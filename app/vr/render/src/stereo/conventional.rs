@@ -1,8 +1,9 @@
 //! The ground truth: renders both eyes, one after the other.
 
 use super::frame::Frame;
-use super::method::{EyeTarget, StereoError, StereoMethod};
-use crate::view::{DepthImage, GpuScene, Layout, Renderer, Targets};
+use super::method::{EyeTarget, MethodReport, StereoError, StereoMethod};
+use super::motion::write_rendered;
+use crate::view::{DepthImage, GpuScene, Layout, Renderer, Targets, VectorPass};
 use yoro::eyes::{Eye, EyePair};
 use yoro_gl::GlError;
 
@@ -10,6 +11,10 @@ use yoro_gl::GlError;
 #[derive(Default)]
 pub struct Conventional {
     targets: Option<Targets>,
+    /// Made when vectors are first asked for.
+    vectors: Option<VectorPass>,
+    /// True if the last frame's vectors were written.
+    has_motion: bool,
 }
 
 impl Conventional {
@@ -21,10 +26,11 @@ impl Conventional {
         mut rendered: impl FnMut(&DepthImage) -> Result<(), GlError>,
     ) -> Result<(), GlError> {
         let Some(targets) = &mut self.targets else { return Ok(()) };
+        self.has_motion = false;
         let dominant = frame.pair.dominant;
         for eye in [dominant.other(), dominant] {
             let (view, to) = (frame.pair.view(eye), frame.to(eye));
-            let depth = frame.wants_depth(eye) || reads_depth(eye);
+            let depth = frame.wants_depth(eye) || frame.to(eye).motion.is_some() || reads_depth(eye);
             let views = std::slice::from_ref(&view);
             let is_complete = frame.renderer.draw_all(targets, frame.scene, views, depth, Some(to))?;
             if !is_complete {
@@ -33,12 +39,24 @@ impl Conventional {
             if depth {
                 let depth = targets.depth(view.size, Eye::Left, [0, 0]);
                 frame.write_depth(eye, &depth);
+                if frame.to(eye).motion.is_some() {
+                    let pass = match &mut self.vectors {
+                        Some(pass) => pass,
+                        slot => slot.insert(VectorPass::new(&frame.renderer.gl)?),
+                    };
+                    self.has_motion = write_rendered(pass, frame, eye, &depth)?;
+                }
                 if reads_depth(eye) {
                     rendered(&depth)?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// True if the last frame's motion targets were filled.
+    pub(super) fn has_motion(&self) -> bool {
+        self.has_motion
     }
 
     /// Makes the targets, unless they are made already.
@@ -53,6 +71,10 @@ impl Conventional {
 impl StereoMethod for Conventional {
     fn prepare(&mut self, renderer: &mut Renderer, _: &GpuScene) -> Result<(), StereoError> {
         Ok(self.make(renderer)?)
+    }
+
+    fn report(&self) -> MethodReport {
+        MethodReport { has_motion: self.has_motion, ..MethodReport::default() }
     }
 
     fn render_to(

@@ -27,6 +27,11 @@ impl<'a> Frame<'a> {
         Ok(Frame { renderer, scene, pair: reversed(pair), convention: pair.depth.convention, to })
     }
 
+    /// Returns a depth range with the convention of the depth that targets receive.
+    pub(super) fn written(&self, depth: DepthRange) -> DepthRange {
+        DepthRange { convention: self.convention, ..depth }
+    }
+
     /// Returns the target of an eye.
     pub(super) fn to(&self, eye: Eye) -> &EyeTarget<'_> {
         &self.to[eye.index()]

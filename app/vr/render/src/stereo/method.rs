@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use crate::view::{DepthCopy, GpuScene, Renderer};
-use yoro::eyes::{Eye, EyePair, EyesError};
+use yoro::eyes::{Eye, EyePair, EyesError, Ndc, View};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Image, RenderTarget, Texture};
 
 /// The reason why a stereo frame could not be rendered.
@@ -77,18 +77,25 @@ pub struct EyeTarget<'a> {
     pub texture: Option<(glow::Texture, Image)>,
     /// Receives the eye's window depth; `None` if it is not needed.
     pub depth: Option<DepthTarget<'a>>,
+    /// Receives motion vectors, with depth of their size; `None` if they are not needed. Both eyes have one, or none has.
+    pub motion: Option<MotionTarget>,
 }
 
 impl EyeTarget<'_> {
     /// Returns the colour of a render target, without depth.
     pub fn of(target: &RenderTarget) -> EyeTarget<'static> {
         let color = target.color(0);
-        EyeTarget { color: target.color_only(), texture: Some((color.raw(), color.image())), depth: None }
+        EyeTarget {
+            color: target.color_only(),
+            texture: Some((color.raw(), color.image())),
+            depth: None,
+            motion: None,
+        }
     }
 
     /// Returns a rectangle of a framebuffer, without depth.
     pub fn rectangle(color: Destination) -> EyeTarget<'static> {
-        EyeTarget { color, texture: None, depth: None }
+        EyeTarget { color, texture: None, depth: None, motion: None }
     }
 }
 
@@ -99,6 +106,19 @@ pub struct DepthTarget<'a> {
     pub to: Destination,
     /// The pass that writes it.
     pub copy: &'a DepthCopy,
+}
+
+/// The target of an eye's motion vectors, of any size, which must be that of the other eye's, too.
+#[derive(Clone, Copy, Debug)]
+pub struct MotionTarget {
+    /// Framebuffer with an RGBA16F colour and a depth attachment. Receives vectors in the eye's normalized device
+    /// coordinates (X, Y, Z; alpha is 1 on moving surfaces), and window depth in the pair's convention.
+    pub to: Destination,
+    /// The eye in the frame that vectors point to, the one that was rendered before the scene's time last changed. Its size
+    /// does not matter.
+    pub former: View,
+    /// The range of depth in normalized device coordinates.
+    pub ndc: Ndc,
 }
 
 /// How much of its guard band a method with [`yoro::eyes::GuardBand::Auto`] drew in a frame.
@@ -121,6 +141,9 @@ pub struct MethodReport {
     pub guard_band: Option<GuardBandUse>,
     /// The reason why both eyes of the last frame were rendered instead of using the method, if they were.
     pub substituted: Option<Substituted>,
+    /// True if the last frame's motion targets were filled. False if there were none, if the method fills none, or if the
+    /// eyes changed so much since the former frame that a runtime must not extrapolate this one.
+    pub has_motion: bool,
 }
 
 /// A reason for rendering both eyes.
@@ -160,12 +183,18 @@ pub trait StereoMethod {
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError>;
 
-    /// Shows the last render again at the eyes' current poses. Returns false and draws nothing if the method cannot do
-    /// that, or if the last render does not reach far enough; the caller must then render a frame.
+    /// Shows the last render again at the eyes' current poses. What moves goes on by `ahead` times its step between the last
+    /// two renders, 0.5 for the frame between two. Returns false if the method cannot do that, or if the last render does
+    /// not reach far enough; the caller must then render a frame.
     ///
     /// # Errors
     /// As [`StereoMethod::render_to`].
-    fn show_again(&mut self, _pair: &EyePair, _to: &[EyeTarget; 2]) -> Result<bool, StereoError> {
+    fn show_again(
+        &mut self,
+        _pair: &EyePair,
+        _to: &[EyeTarget; 2],
+        _ahead: f32,
+    ) -> Result<bool, StereoError> {
         Ok(false)
     }
 

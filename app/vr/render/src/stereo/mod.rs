@@ -5,9 +5,13 @@ mod border;
 mod conventional;
 mod frame;
 mod guard_band;
+mod half_rate;
 mod hybrid;
 mod method;
 mod mono;
+mod motion;
+#[cfg(test)]
+mod motion_tests;
 mod near_field_policy;
 mod near_fraction;
 mod offline;
@@ -16,7 +20,6 @@ mod over;
 mod paper;
 mod pipeline;
 mod readback;
-mod reprojected;
 mod shading_reprojection;
 mod single_pass;
 mod still;
@@ -31,9 +34,11 @@ use yoro_gl::{Context, GlError};
 
 pub use auto::{Auto, SelectedMethod, unfit};
 use conventional::Conventional;
+use half_rate::HalfRate;
 use hybrid::Hybrid;
 pub use method::{
-    DepthTarget, EyeTarget, GuardBandUse, MethodReport, StereoError, StereoFrame, StereoMethod, Substituted,
+    DepthTarget, EyeTarget, GuardBandUse, MethodReport, MotionTarget, StereoError, StereoFrame, StereoMethod,
+    Substituted,
 };
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};
@@ -41,7 +46,6 @@ pub use offline::{Offline, SynthesizedImage};
 pub use options::{Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 pub use pipeline::Synthesis;
-use reprojected::Reprojected;
 use shading_reprojection::ShadingReprojection;
 use single_pass::SinglePass;
 pub use still::stills;
@@ -59,15 +63,14 @@ pub fn create(
 ) -> Result<Box<dyn StereoMethod>, GlError> {
     settings.supports(method, gl.capabilities())?;
     Ok(match method {
+        Method::Conventional if options.half_rate => Box::new(HalfRate::new(gl, options, true)?),
         Method::Conventional => Box::new(Conventional::default()),
         Method::Instanced => Box::new(SinglePass::instanced(gl)),
         Method::Multiview => Box::new(SinglePass::new(Layout::Layered)),
         Method::ShadingReprojection => Box::new(ShadingReprojection::default()),
         Method::Hybrid => Box::new(Hybrid::new(options.split_disparity)),
         Method::Mono => Box::new(Mono::default()),
-        Method::Synthesized => match options.render_rate {
-            Some(rate) => Box::new(Reprojected::new(gl, options, rate)?),
-            None => Box::new(Synthesized::new(gl, options)?),
-        },
+        Method::Synthesized if options.half_rate => Box::new(HalfRate::new(gl, options, false)?),
+        Method::Synthesized => Box::new(Synthesized::new(gl, options)?),
     })
 }

@@ -47,10 +47,10 @@ pub struct StereoOptions {
     pub near_field: Option<f32>,
     /// When to render both eyes of frames that are mostly too near; `None` for never.
     pub policy: Option<NearFieldPolicy>,
-    /// Renders per second. Frames between two renders show the last one at the newest poses
-    /// ([`super::StereoMethod::show_again`]). `None` renders every frame. Without near field and policy. Not with
-    /// [`Pipeline::Paper`].
-    pub render_rate: Option<f32>,
+    /// True if frames between two renders are to be made of the last one ([`super::StereoMethod::show_again`]): by
+    /// [`Method::Synthesized`], without near field and policy and not with [`Pipeline::Paper`], and by
+    /// [`Method::Conventional`].
+    pub half_rate: bool,
     /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
     /// `f_px * IPD / split_disparity` metres.
     pub split_disparity: f32,
@@ -63,7 +63,7 @@ impl Default for StereoOptions {
             guard_band: GuardBand::Distance(1.0),
             near_field: None,
             policy: Some(NearFieldPolicy::default()),
-            render_rate: None,
+            half_rate: false,
             split_disparity: 1.0,
         }
     }

@@ -6,6 +6,7 @@ use super::conventional::Conventional;
 use super::frame::Frame;
 use super::guard_band::AutoGuardBand;
 use super::method::{EyeTarget, MethodReport, StereoError, StereoMethod, Substituted};
+use super::motion::SynthesizedMotion;
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::NearFraction;
 use super::options::{Pipeline, PipelineOptions, StereoOptions};
@@ -26,6 +27,10 @@ pub struct Synthesized {
     made: Option<Made>,
     auto_guard_band: Option<AutoGuardBand>,
     switch: Option<Switch>,
+    /// Made when vectors are first asked for.
+    motion: Option<SynthesizedMotion>,
+    /// True if the last frame's vectors were written.
+    has_motion: bool,
 }
 
 /// What depends on the renderer.
@@ -96,6 +101,8 @@ impl Synthesized {
             made: None,
             auto_guard_band: is_auto.then(|| AutoGuardBand::new(gl)).transpose()?,
             switch: switch.transpose()?,
+            motion: None,
+            has_motion: false,
         })
     }
 
@@ -155,6 +162,7 @@ impl Synthesized {
         let renderer = frame.renderer;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let views = pair.synthesis_views(self.options.guard_band)?;
+        self.has_motion = false;
         if self.render_both(frame)? {
             return Ok(());
         }
@@ -197,6 +205,14 @@ impl Synthesized {
         let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
         renderer.develop(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
         over.finish(frame, dominant, &surfaces);
+        if frame.to(other).motion.is_some() {
+            let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
+            let motion = match &mut self.motion {
+                Some(motion) => motion,
+                slot => slot.insert(SynthesizedMotion::new(&self.gl)?),
+            };
+            self.has_motion = motion.write(frame, (&depth, &views.source), self.options.guard_band)?;
+        }
         Ok(())
     }
 }
@@ -239,6 +255,10 @@ impl StereoMethod for Synthesized {
         MethodReport {
             guard_band: self.auto_guard_band.as_ref().and_then(AutoGuardBand::last),
             substituted: self.switch.as_ref().is_some_and(has_switched).then_some(Substituted::Near),
+            has_motion: match self.switch.as_ref().filter(|switch| has_switched(switch)) {
+                Some(switch) => switch.conventional.has_motion(),
+                None => self.has_motion,
+            },
         }
     }
 

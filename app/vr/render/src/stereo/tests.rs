@@ -60,6 +60,14 @@ fn move_last_quad(scene: &mut Scene) {
     scene.motion = Motion { loops: vec![0.4], nodes, meshes, ..Motion::default() };
 }
 
+/// The scene with its last quad, which is opaque, in motion.
+pub(super) fn moving_scene() -> Scene {
+    let mut scene = scene();
+    quad(&mut scene.model, 2, Vec3::new(-0.9, -0.3, -1.2), Vec3::X * 0.5, Vec3::Y * 0.6);
+    move_last_quad(&mut scene);
+    scene
+}
+
 /// Settings without effects that reach beyond a pixel: no bloom, one sample.
 pub(super) fn local() -> RenderSettings {
     RenderSettings { shadow_map_size: 256, bloom: false, msaa: 1, ..RenderSettings::default() }
@@ -81,15 +89,32 @@ impl Rig {
         Rig::of(gl, settings, scene())
     }
 
-    fn of(gl: &Rc<Context>, settings: &RenderSettings, scene: Scene) -> Rig {
+    pub(super) fn of(gl: &Rc<Context>, settings: &RenderSettings, scene: Scene) -> Rig {
         let scene = GpuScene::upload(gl, scene).unwrap();
         let renderer = Renderer::new(gl, settings, &scene).unwrap();
         Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() }
     }
 
     pub(super) fn render(&mut self, method: &mut dyn StereoMethod, pair: &EyePair) -> [Vec<u8>; 2] {
-        method.render(&mut self.renderer, &self.scene, pair, &mut self.frame).unwrap();
+        self.render_with(method, pair, |_, to| to)
+    }
+
+    /// Renders to targets that `change` has changed.
+    pub(super) fn render_with<'a>(
+        &mut self,
+        method: &mut dyn StereoMethod,
+        pair: &EyePair,
+        change: impl Fn(Eye, EyeTarget<'a>) -> EyeTarget<'a>,
+    ) -> [Vec<u8>; 2] {
+        self.frame.resize(pair.size).unwrap();
+        let to = self.frame.targets();
+        let to = Eye::BOTH.map(|eye| change(eye, to[eye.index()]));
+        method.render_to(&mut self.renderer, &self.scene, pair, &to).unwrap();
         Eye::BOTH.map(|eye| self.frame.eye(eye).read_rgba8(0, [0, 0], pair.size))
+    }
+
+    pub(super) fn set_time(&mut self, seconds: f64) {
+        self.renderer.set_time(&mut self.scene, seconds).unwrap();
     }
 }
 

@@ -27,6 +27,9 @@ mod targets;
 mod tests;
 mod transparent;
 mod uniforms;
+mod vectors;
+#[cfg(test)]
+mod vectors_tests;
 
 pub use cluster::Selection;
 pub use declared::{PASSES, Part as TilePart, Pass};
@@ -40,3 +43,4 @@ pub(crate) use request::{Columns, DrawRequest, Rectangle, of_columns};
 pub use scene::GpuScene;
 pub use settings::{MAX_POINT_LIGHTS, MSAA, RenderSettings};
 pub(crate) use targets::Targets;
+pub(crate) use vectors::{Step, VectorPass};

@@ -16,6 +16,8 @@ pub struct Moving {
     /// Index of the first piece's cluster; the others follow it.
     first: usize,
     seconds: f64,
+    /// True if the last [`Moving::set_time`] moved anything.
+    has_moved: bool,
 }
 
 /// A part that moves.
@@ -58,7 +60,7 @@ impl Moving {
         model.parts = still;
         let moment = motion.start();
         let mesh = Mesh::rewritable(gl, &VERTEX_ATTRIBUTES, &moment.vertices, &indices)?;
-        Ok(Some(Moving { motion, moment, mesh, pieces, first: 0, seconds: 0.0 }))
+        Ok(Some(Moving { motion, moment, mesh, pieces, first: 0, seconds: 0.0, has_moved: false }))
     }
 
     /// Appends the moving parts to a scene's clusters, in batches of their own after those of the still parts.
@@ -79,6 +81,11 @@ impl Moving {
         }
     }
 
+    /// Binds the mesh, with the positions before the last change of the time at the location after those of vertices.
+    pub fn bind_with_former(&self) {
+        self.mesh.bind_with_former(self.has_moved);
+    }
+
     /// Returns the clusters that move.
     pub fn of<'a>(&self, clusters: &'a [Cluster]) -> &'a [Cluster] {
         &clusters[self.first..self.first + self.pieces.len()]
@@ -86,7 +93,8 @@ impl Moving {
 
     /// Moves everything, and the clusters' bounds, to its place at a time in seconds. False if it is there already.
     pub fn set_time(&mut self, seconds: f64, clusters: &mut [Cluster]) -> bool {
-        if seconds == self.seconds {
+        self.has_moved = seconds != self.seconds;
+        if !self.has_moved {
             return false;
         }
         self.seconds = seconds;

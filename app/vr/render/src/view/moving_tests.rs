@@ -15,9 +15,14 @@ fn track(values: &[f32]) -> Option<Track> {
     Some(Track { times: vec![0.0, 2.0], values: values.to_vec(), ..Track::default() })
 }
 
+/// Metres per second of the cube.
+pub const CUBE_VELOCITY: Vec3 = Vec3::new(-0.1, 0.15, -2.0);
+/// Radians per second of the fence, about Y, until its rotation slows down.
+pub const FENCE_TURN: f64 = 0.15;
+
 /// The small scene, in which a cube comes from behind the eye, the fence turns, a pane of glass rises and a lamp
 /// passes.
-fn moving() -> Scene {
+pub fn moving() -> Scene {
     let mut scene = scene(ShadingStyle::Realistic);
     let glass = scene.model.vertices.len();
     quad(&mut scene.model, 5, Vec3::new(-0.2, 0.3, -1.2), Vec3::X * 0.6, Vec3::Y * 0.4);

@@ -139,7 +139,7 @@ pub struct GpuScene {
     bounds: Bounds,
     triangle_count: usize,
     mesh: Mesh,
-    moving: Option<Moving>,
+    pub(super) moving: Option<Moving>,
     pub(super) materials: Vec<GpuMaterial>,
     textures: Vec<Texture>,
     pub(super) clusters: Vec<Cluster>,

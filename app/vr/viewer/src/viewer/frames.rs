@@ -48,7 +48,7 @@ impl Viewer {
             }
             return Ok(());
         };
-        if self.method.show_again(&self.settings, (self.now_ns, self.refresh_hz), pair, to)? {
+        if self.method.show_again(&self.settings, self.now_ns, pair, to)? {
             return Ok(());
         }
         shown.move_on(self.now_ns)?;
@@ -56,6 +56,23 @@ impl Viewer {
             self.stats.guard_band(used);
         }
         Ok(())
+    }
+
+    /// Says whether the display's runtime makes the frames between those that are rendered, of colour, depth and motion
+    /// vectors. Otherwise the viewer makes them with `frame-rate=half`.
+    ///
+    /// # Errors
+    /// [`ViewerError::Gl`] if the method cannot be compiled for this.
+    pub fn let_runtime_make_frames(&mut self, makes: bool) -> Result<(), ViewerError> {
+        if self.method.let_runtime_make_frames(makes) {
+            self.make_method()?;
+        }
+        Ok(())
+    }
+
+    /// True if the display's runtime is to make every second frame.
+    pub fn leaves_frames_to_runtime(&self) -> bool {
+        self.method.leaves_frames_to_runtime(&self.settings)
     }
 
     /// Returns the HUD of this frame, if it is to be shown.
@@ -121,6 +138,7 @@ impl Viewer {
         let scene = self.scene_state();
         self.method.end_frame(now_ns, refresh_hz, gpu);
         let load = Load { now_ns, refresh_hz, late_refreshes, gpu_ms };
+        self.method.judge_rate(&load, &self.settings);
         if self.settings.adaptive && scene == SceneState::Ready && self.method.adapt(&load, &self.settings) {
             self.make_method()?;
         }

@@ -50,6 +50,7 @@ impl Viewer {
             | Action::Settings
             | Action::StartScreen(_)
             | Action::ShareLog
+            | Action::ShareNotices
             | Action::Scan(_)
             | Action::Hud(_)
             | Action::Scene

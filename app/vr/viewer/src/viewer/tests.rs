@@ -117,10 +117,10 @@ fn a_session_runs_from_loading_to_its_summary() {
 }
 
 #[test]
-fn a_render_rate_below_the_displays_renders_every_other_frame() {
+fn half_the_rate_renders_every_other_frame() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let mut run = Run::new(gl, &["scene=talk", "hud=false", "method=auto", "render-rate=30"]);
+    let mut run = Run::new(gl, &["scene=talk", "hud=false", "method=auto", "frame-rate=half"]);
     run.load();
     let still = HeldHead { rendered: Quat::IDENTITY, displayed: Quat::IDENTITY };
     run.viewer.hold_head(Some(still));
@@ -538,7 +538,8 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
     assert!(run.image() != other, "what the camera sees");
     assert_eq!(run.viewer.touch(tile(0, 1)).unwrap(), Some(Action::Scan(false)));
     assert!(!run.viewer.viewer().is_scanning());
-    assert_eq!(run.viewer.touch(tile(1, 1)).unwrap(), Some(Action::ShareLog));
+    assert_eq!(run.viewer.touch(Some([110.0, 149.0])).unwrap(), Some(Action::ShareLog));
+    assert_eq!(run.viewer.touch(Some([130.0, 149.0])).unwrap(), Some(Action::ShareNotices));
     assert_eq!(run.viewer.touch(Some([160.0, 1.0])).unwrap(), Some(Action::Nothing));
     assert_eq!(run.viewer.touch(tile(3, 1)).unwrap(), Some(Action::StartScreen(false)));
     let kept = run.viewer.viewer_mut().take_kept().unwrap();

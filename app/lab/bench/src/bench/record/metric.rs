@@ -46,6 +46,8 @@ pub const HOLE_FLIP: &str = "hole_flip";
 pub const VISIBLE_PSNR: &str = "visible_psnr";
 /// SSIM (gaussian, RGB) outside of the holes.
 pub const VISIBLE_SSIM: &str = "visible_ssim";
+/// PSNR (RGB) within 3 pixels of what moves in the scene, in dB.
+pub const MOVING_PSNR: &str = "moving_psnr";
 /// FLIP outside of the holes.
 pub const VISIBLE_FLIP: &str = "visible_flip";
 

@@ -1,6 +1,8 @@
 //! Measures jobs round by round.
 
+mod emulated_runtime;
 mod frames;
+mod half_rate;
 mod patchers;
 mod reprojection;
 mod sequences;
@@ -127,6 +129,7 @@ impl<'a> Runner<'a> {
             Measure::GuardBand => self.guard_band(job, &mut prepared),
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Reprojection(displaced) => self.reprojection(job, displaced, &mut prepared),
+            Measure::HalfRate(motion) => self.half_rate(job, motion, &mut prepared),
             Measure::Stream(late) => self.stream(job, late, &mut prepared),
             Measure::Executed(device) => self.executed(job, &device, &mut prepared),
             Measure::WholeFrames => self.whole_frames(job, &mut prepared),
@@ -159,6 +162,7 @@ impl<'a> Runner<'a> {
             Measure::Flicker
             | Measure::GuardBand
             | Measure::Reprojection(Displaced::Late(..))
+            | Measure::HalfRate(_)
             | Measure::Stream(_) => Views::along_path(job, prepared, views::STEP)?.first(),
         };
         BlankFinder::new(self.gl)?.refuse_blank(prepared, views.names.iter().cloned().zip(&views.pairs))

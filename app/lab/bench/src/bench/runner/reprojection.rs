@@ -32,10 +32,8 @@ const NEAREST: f32 = 0.5;
 /// The angle in degrees by which each canted eye is turned outwards.
 const CANT_DEGREES: f32 = 5.0;
 
-/// Names of what is timed: two renders and, with a limited rate of renders, the rendered frames and those in between.
+/// Names of what is timed: two renders and, with half the rate of renders, the rendered frames and those in between.
 const TIMED: [&str; 3] = ["conventional", "rendered", "shown-again"];
-/// Renders per second, which is every other frame of a sequence.
-const RENDER_RATE: f32 = 36.0;
 
 /// The pictures of each way, by its name.
 type Shown = Vec<(&'static str, RgbImage)>;
@@ -94,7 +92,11 @@ impl Runner<'_> {
 }
 
 /// Returns the measurement of a contender, and creates it if there is none yet.
-fn measurement_of<'a>(all: &'a mut Vec<Measurement>, job: &Job, name: &str) -> &'a mut Measurement {
+pub(super) fn measurement_of<'a>(
+    all: &'a mut Vec<Measurement>,
+    job: &Job,
+    name: &str,
+) -> &'a mut Measurement {
     let at = all.iter().position(|m| m.contender == name).unwrap_or_else(|| {
         all.push(Measurement::new(&job.conditions, name, 0));
         all.len() - 1
@@ -103,7 +105,7 @@ fn measurement_of<'a>(all: &'a mut Vec<Measurement>, job: &Job, name: &str) -> &
 }
 
 /// The number of frames from one measured frame to the next.
-const SPREAD: usize = 9;
+pub(super) const SPREAD: usize = 9;
 
 /// Returns the same eyes, turned outwards.
 fn canted(pair: &EyePair) -> EyePair {
@@ -124,10 +126,12 @@ struct Timer {
 
 impl Timer {
     fn new(gl: &Rc<Context>, job: &Job) -> Result<Timer, GlError> {
-        let options =
-            StereoOptions { render_rate: Some(RENDER_RATE), policy: None, ..StereoOptions::default() };
-        let create = |method| stereo::create(gl, method, &job.render, &options);
-        let methods = [create(Method::Conventional)?, create(Method::Synthesized)?];
+        let options = StereoOptions { half_rate: true, policy: None, ..StereoOptions::default() };
+        let create = |method, options| stereo::create(gl, method, &job.render, options);
+        let methods = [
+            create(Method::Conventional, &StereoOptions::default())?,
+            create(Method::Synthesized, &options)?,
+        ];
         Ok(Timer { gl: gl.clone(), methods, frame: StereoFrame::new(gl, job.eyes.size)? })
     }
 
@@ -146,7 +150,10 @@ impl Timer {
                 let method = &mut self.methods[at.min(1)];
                 match at {
                     2 => {
-                        ensure!(method.show_again(now, &self.frame.targets())?, "the head has turned too far")
+                        ensure!(
+                            method.show_again(now, &self.frame.targets(), 0.0)?,
+                            "the head has turned too far"
+                        )
                     }
                     _ => method.render(&mut prepared.renderer, &prepared.scene, then, &mut self.frame)?,
                 }

@@ -30,8 +30,11 @@ impl Viewer {
         let before = self.menu.pointed();
         let action = match self.menu.look(head, rays, self.now_ns) {
             Look::Nothing => {
-                let is_viewer = |choice: Option<Choice>| matches!(choice, Some((Item::Lenses, _)));
-                if is_viewer(self.menu.pointed()) != is_viewer(before) {
+                let note = |choice: Option<Choice>| match choice {
+                    Some((item @ (Item::Lenses | Item::Close), _)) => Some(item),
+                    _ => None,
+                };
+                if note(self.menu.pointed()) != note(before) {
                     self.write_menu();
                 }
                 Action::Nothing
@@ -231,6 +234,7 @@ impl Viewer {
              {}",
             match self.menu.pointed() {
                 Some((Item::Lenses, _)) => "Another viewer: scan its code on the start screen.",
+                Some((Item::Close, _)) => "Others' licences: assets/NOTICES.txt in the APK.",
                 _ => "Look at a tile for 1.5 s, or tap. Hold: recenter.",
             }
         );

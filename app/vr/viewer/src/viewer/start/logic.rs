@@ -36,7 +36,8 @@ pub(in crate::viewer) enum Tile {
     /// The viewer with this index.
     Viewer(usize),
     Scan,
-    Log,
+    /// On its left half the log is shared, on its right half the notices of others' code.
+    Share,
     Reset,
     Start,
 }
@@ -48,7 +49,7 @@ impl Tile {
         Tile::Viewer(2),
         Tile::Viewer(3),
         Tile::Scan,
-        Tile::Log,
+        Tile::Share,
         Tile::Reset,
         Tile::Start,
     ];
@@ -142,7 +143,7 @@ impl StartScreen {
                 .map_or_else(String::new, |[maker, model]| format!("{}\n{}", cut(maker), cut(model))),
             Tile::Scan if self.is_scanning => "Stop\nscanning".into(),
             Tile::Scan => "Scan a\nnew viewer".into(),
-            Tile::Log => "Share\nthe log".into(),
+            Tile::Share => "Share the\nlog  notices".into(),
             Tile::Reset => "Reset\nall settings".into(),
             Tile::Start => "Start".into(),
         };

@@ -46,25 +46,26 @@ impl Viewer {
     /// Performs the choice at a point on the panel, 0 to 1 from the lower left. `None` is a key, which starts.
     pub(crate) fn touch_start_screen(&mut self, at: Option<Vec2>) -> Action {
         let tile = match at {
-            Some(at) => tile_at(at, Tile::ALL.len()).map(|(i, _)| Tile::ALL[i]),
-            None => Some(Tile::Start),
+            Some(at) => tile_at(at, Tile::ALL.len()).map(|(i, share)| (Tile::ALL[i], share)),
+            None => Some((Tile::Start, 0.0)),
         };
         self.start.message.clear();
         let was_scanning = std::mem::take(&mut self.start.is_scanning);
         let action = match tile {
-            Some(Tile::Viewer(i)) => match self.viewers().get(i) {
+            Some((Tile::Viewer(i), _)) => match self.viewers().get(i) {
                 Some(viewer) => self.choose_viewer(&viewer.clone()),
                 None => Action::Nothing,
             },
-            Some(Tile::Scan) if was_scanning => Action::Scan(false),
+            Some((Tile::Scan, _)) if was_scanning => Action::Scan(false),
             // Shown if there is no camera, or if it may not be used.
-            Some(Tile::Scan) => {
+            Some((Tile::Scan, _)) => {
                 OTHER.clone_into(&mut self.start.message);
                 Action::Scan(true)
             }
-            Some(Tile::Log) => Action::ShareLog,
-            Some(Tile::Reset) => self.reset(),
-            Some(Tile::Start) => {
+            Some((Tile::Share, share)) if share < 0.5 => Action::ShareLog,
+            Some((Tile::Share, _)) => Action::ShareNotices,
+            Some((Tile::Reset, _)) => self.reset(),
+            Some((Tile::Start, _)) => {
                 // From now on the viewer counts as chosen by the user, even if it is the default.
                 self.keep(&[("viewer", self.settings.viewer.clone())]);
                 self.start.leave();

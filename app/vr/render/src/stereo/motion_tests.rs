@@ -1,0 +1,103 @@
+//! Motion vectors of both eyes: those that are synthesized against those of two renders.
+
+use glam::{Quat, Vec3};
+
+use super::tests::{Rig, local, moving_scene, pair};
+use super::*;
+use yoro::eyes::{DepthConvention, Eye, EyePair, Ndc, Pose};
+use yoro_context::{Backend, Headless};
+use yoro_gl::{Destination, Filter, Format, RenderTarget};
+
+const SIZE: [u32; 2] = [80, 60];
+
+/// Renders a frame, and returns the vectors of both eyes, at half the size.
+fn vectors(
+    gl: &Rc<Context>,
+    rig: &mut Rig,
+    method: &mut dyn StereoMethod,
+    [now, then]: [&EyePair; 2],
+    ndc: Ndc,
+) -> [Vec<[f32; 4]>; 2] {
+    let formats = [(Format::Rgba32F, Filter::Nearest)];
+    let depth = Some(Format::Depth32F);
+    let target = || RenderTarget::new(gl, SIZE.map(|n| n + 5), &formats, depth).unwrap();
+    let images = [target(), target()];
+    let motion = |eye: Eye| MotionTarget {
+        to: Destination { origin: [2, 3], size: SIZE, ..Destination::whole(&images[eye.index()]) },
+        former: then.view(eye),
+        ndc,
+    };
+    rig.render_with(method, now, |eye, to| EyeTarget { motion: Some(motion(eye)), ..to });
+    assert!(method.report().has_motion);
+    images.each_ref().map(|image| image.read_rgba32f(0, [2, 3], SIZE))
+}
+
+/// Pixels by which two vectors differ.
+fn off(a: &[f32; 4], b: &[f32; 4]) -> f32 {
+    let [x, y] = [0, 1].map(|c| (a[c] - b[c]) * SIZE[c] as f32 / 2.0);
+    x.hypot(y)
+}
+
+/// Outside holes, vectors made of one eye's are those of two renders: with a moving head, and of what moves itself. Beside
+/// silhouettes, a pixel may show the other surface.
+#[test]
+fn vectors_of_both_eyes_are_those_of_two_renders() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    for (dominant, convention, ndc) in [
+        (Eye::Left, DepthConvention::Standard, Ndc::MinusOneToOne),
+        (Eye::Right, DepthConvention::Reversed, Ndc::ZeroToOne),
+    ] {
+        let settings = local();
+        let create = |method| create(gl, method, &settings, &StereoOptions::default()).unwrap();
+        let mut rig = Rig::of(gl, &settings, moving_scene());
+        let now = pair(dominant, convention);
+        let turn = Quat::from_rotation_y(0.02);
+        let then = EyePair {
+            poses: now.poses.map(|pose| Pose {
+                position: turn * pose.position + Vec3::new(0.01, -0.02, 0.05),
+                orientation: turn * pose.orientation,
+            }),
+            ..now
+        };
+        let [mut truth, mut one] = [create(Method::Conventional), create(Method::Synthesized)];
+        rig.set_time(0.15);
+        rig.set_time(0.17);
+        let expected = vectors(gl, &mut rig, truth.as_mut(), [&now, &then], ndc);
+        let got = vectors(gl, &mut rig, one.as_mut(), [&now, &then], ndc);
+        for eye in Eye::BOTH {
+            let (got, expected) = (&got[eye.index()], &expected[eye.index()]);
+            let moving = expected.iter().filter(|v| v[3] == 1.0).count();
+            let far: f32 = expected.iter().map(|v| off(v, &[0.0; 4])).fold(0.0, f32::max);
+            assert!(moving > 100 && far > 4.0, "{eye:?}: {moving} pixels move, by up to {far}");
+            for (what, moves, least) in [("still", 0.0, 90), ("moving", 1.0, 80)] {
+                let of: Vec<_> = got.iter().zip(expected).filter(|(_, want)| want[3] == moves).collect();
+                let near =
+                    of.iter().filter(|(got, want)| off(got, want) < 0.05 && (got[2] - want[2]).abs() < 2e-3);
+                let near = near.count();
+                assert!(
+                    near * 100 >= of.len() * least,
+                    "{what}, {dominant:?}, {eye:?}: {near} of {}",
+                    of.len()
+                );
+            }
+        }
+        // Nothing has moved.
+        rig.set_time(0.17);
+        let still = vectors(gl, &mut rig, one.as_mut(), [&now, &now], ndc);
+        let largest = still.iter().flatten().map(|v| off(v, &[0.0; 4])).fold(0.0, f32::max);
+        assert!(largest < 1e-3, "{largest}");
+        // An eye that moved by itself has another law.
+        let mut raised = now;
+        raised.frusta.iter_mut().for_each(|f| (f.bottom, f.top) = (f.bottom + 0.1, f.top + 0.1));
+        raised.frusta[0].bottom += 0.2;
+        raised.frusta[0].top += 0.2;
+        let to = |eye: Eye, to| {
+            let target = Destination { framebuffer: None, origin: [0, 0], size: SIZE };
+            EyeTarget { motion: Some(MotionTarget { to: target, former: raised.view(eye), ndc }), ..to }
+        };
+        rig.render_with(one.as_mut(), &now, to);
+        assert!(!one.report().has_motion);
+    }
+    assert_eq!(gl.take_errors(), None);
+}

@@ -1,0 +1,168 @@
+//! Motion vectors of a rendered view.
+
+use std::rc::Rc;
+
+use glam::{IVec2, Mat4, Vec2, Vec4};
+
+use super::cluster::Culler;
+use super::depth::{DepthImage, DepthProgram};
+use super::scene::{Features, GpuScene};
+use super::uniforms::{depth_test, eye_to_clip};
+use yoro::eyes::{Ndc, View};
+use yoro_gl::{
+    Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
+};
+
+/// Writes motion vectors and depth of a view, whose size need not be that of the rendered image: normalized device
+/// coordinates minus those of the former frame.
+///
+/// Sky and still surfaces have those of depth and poses. Moving surfaces are drawn, from the vertices that they have and
+/// those that they had before the scene's time last changed.
+pub(crate) struct VectorPass {
+    gl: Rc<Context>,
+    /// For surfaces that are not cut out, cut out by the opacity of their colour, and by a diffuse map.
+    moving: [Program; 3],
+    vectors: DepthProgram,
+    /// Vectors and inverse distance of moving surfaces.
+    target: RenderTarget,
+    /// True if the target shows any.
+    moves: bool,
+}
+
+/// What moves between two frames: the view whose pixels get vectors, and the view of each frame in whose normalized device
+/// coordinates these are, with the same pose. Only the first one's size matters. All have the convention of the depth
+/// that is written.
+#[derive(Clone, Copy)]
+pub(crate) struct Step {
+    pub view: View,
+    pub now: View,
+    pub then: View,
+    pub ndc: Ndc,
+}
+
+impl VectorPass {
+    pub fn new(gl: &Rc<Context>) -> Result<VectorPass, GlError> {
+        let program = |features: Features| {
+            let source =
+                ShaderSource::Raster { vertex: "render/motion.vert", fragment: "render/motion.frag" };
+            Program::new(gl, source, &features.defines())
+        };
+        let formats = [(Format::Rgba16F, Filter::Nearest)];
+        Ok(VectorPass {
+            gl: gl.clone(),
+            moving: [
+                program(Features::default())?,
+                program(Features::CUTOUT)?,
+                program(Features::CUTOUT.or(Features::DIFFUSE_MAP))?,
+            ],
+            vectors: DepthProgram::new(gl, "render/vectors.frag"),
+            target: RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth24))?,
+            moves: false,
+        })
+    }
+
+    /// Returns the context of the pass.
+    pub fn context(&self) -> &Rc<Context> {
+        &self.gl
+    }
+
+    /// Draws the moving surfaces of a view, for [`VectorPass::write`].
+    pub fn draw_moving(&mut self, scene: &GpuScene, step: &Step) -> Result<(), GlError> {
+        self.moves = scene.is_moving_in(&step.view);
+        let Some(moving) = scene.moving.as_ref().filter(|_| self.moves) else { return Ok(()) };
+        let Step { view, now, then, .. } = step;
+        self.target.resize(view.size)?;
+        let gl = &self.gl;
+        gl.pass("moving surfaces", || {
+            self.target.bind();
+            gl.clear(Some(view.depth.clear_value()));
+            let culler = Culler::of_view(view);
+            moving.bind_with_former();
+            for (material, _, clusters) in scene.opaque().filter(|(_, moves, _)| *moves) {
+                let features = material.features;
+                let program = match features.contains(Features::CUTOUT) {
+                    false => &self.moving[0],
+                    true => &self.moving[1 + usize::from(features.contains(Features::DIFFUSE_MAP))],
+                };
+                let depth = depth_test(view.depth.convention);
+                gl.set_raster_state(&RasterState { depth, blend: Blend::Off, cull: !material.double_sided });
+                program
+                    .bind()
+                    .set("eye", view.pose.position)
+                    .set("eye_to_clip", eye_to_clip(view))
+                    .set("to_vectors", eye_to_clip(now))
+                    .set("former_eye", then.pose.position)
+                    .set("former_to_vectors", eye_to_clip(then));
+                scene.set_material(program, material);
+                culler.visible(clusters).for_each(|range| moving.mesh.draw(range, 1));
+            }
+            self.target.discard_depth();
+        });
+        Ok(())
+    }
+
+    /// Writes vectors (RGBA16F, alpha 1 on moving surfaces) and window depth of a part of the view whose moving surfaces
+    /// were drawn last. The destination has the part's size; `corner` is the part's lower left pixel. `rendered` is the
+    /// view that the depth image shows, from the same place in the same direction.
+    pub fn write(
+        &mut self,
+        (depth, rendered): (&DepthImage, &View),
+        step: &Step,
+        corner: [u32; 2],
+        to: &Destination,
+    ) -> Result<(), GlError> {
+        let program = self.vectors.bind(depth)?;
+        program.texture("moving_map", 1, self.target.color(0).raw()).set("moves", self.moves);
+        set_places(program, (depth, rendered), step);
+        let signed = |at: [u32; 2]| IVec2::from(at.map(|n| n as i32));
+        program
+            .set("offset", signed(corner) - signed(to.origin))
+            .set("last", signed(step.view.size) - 1)
+            .set("reverse", depth.convention != step.view.depth.convention)
+            .set("z_scale", if step.ndc == Ndc::ZeroToOne { 0.5f32 } else { 1.0 });
+        self.gl.pass("vectors", || {
+            self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+            self.gl.overwrite(to, 1, true);
+            self.gl.draw_screen();
+            self.gl.set_raster_state(&RasterState::SCREEN);
+        });
+        Ok(())
+    }
+}
+
+/// Sets where a pixel's depth and former place are.
+fn set_places(program: &Program, (depth, rendered): (&DepthImage, &View), step: &Step) {
+    let Step { view, now, then, .. } = step;
+    let pair = |[x, y]: [u32; 2]| Vec2::new(x as f32, y as f32);
+    let corner = |view: &View| Vec2::new(view.frustum.left, view.frustum.bottom);
+    let extent = |view: &View| Vec2::new(view.frustum.width(), view.frustum.height());
+    let density = extent(view) / pair(view.size);
+    let rendered_density = extent(rendered) / pair(rendered.size);
+    let (scale, first) = (density / rendered_density, pair(depth.origin));
+    let shift = (corner(view) - corner(rendered)) / rendered_density + first;
+    let last = first + pair(rendered.size) - 1.0;
+    let (to_unit, start) =
+        (2.0 * density / extent(now), 2.0 * (corner(view) - corner(now)) / extent(now) - 1.0);
+    let (constant, slope) = view.depth.inverse_distance_law();
+    program
+        .set("to_depth", Vec4::new(scale.x, scale.y, shift.x, shift.y))
+        .set("depth_range", Vec4::new(first.x, first.y, last.x, last.y))
+        .set("inverse_distance", Vec2::new(constant as f32, slope as f32))
+        .set("to_place", Vec4::new(to_unit.x, to_unit.y, start.x, start.y))
+        .set("to_former", to_former(now, then));
+}
+
+/// Returns the matrix from normalized device coordinates x and y, 1, and inverse distance to the former frame's clip space.
+fn to_former(now: &View, then: &View) -> Mat4 {
+    let f = &now.frustum;
+    // The ray through a place in the image, at distance 1.
+    let rays = Mat4::from_cols(
+        Vec4::new(f.width() / 2.0, 0.0, 0.0, 0.0),
+        Vec4::new(0.0, f.height() / 2.0, 0.0, 0.0),
+        Vec4::new((f.left + f.right) / 2.0, (f.bottom + f.top) / 2.0, -1.0, 0.0),
+        Vec4::ZERO,
+    );
+    let mut from_former_eye = Mat4::from_quat(now.pose.orientation) * rays;
+    from_former_eye.w_axis = (now.pose.position - then.pose.position).extend(1.0);
+    eye_to_clip(then) * from_former_eye
+}

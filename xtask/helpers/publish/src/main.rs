@@ -1,0 +1,43 @@
+//! `licences` checks the licences of all dependencies. `notices PACKAGE TARGET [CARGO ARGUMENT...]` prints the notices of
+//! what a package contains. `site FOLDER [RELEASE]` completes a folder with the page and rustdoc to the site, and checks
+//! its links.
+//!
+//! This is a separate program so that only people who publish or lint have to compile its dependencies.
+
+mod guides;
+mod licences;
+mod links;
+mod notices;
+mod packages;
+mod site;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::bail;
+use xtask::console;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    console::exit_code(perform(&arguments).map(|(text, passed)| {
+        console::print(&text);
+        passed
+    }))
+}
+
+/// Returns the text to print, and false if a check has failed.
+fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
+    match arguments {
+        ["licences"] => licences::check(),
+        ["notices", package, target, features @ ..] => Ok((notices::text(package, target, features)?, true)),
+        ["site", folder] => site(folder, None),
+        ["site", folder, release] => site(folder, Some(release)),
+        _ => bail!("usage: licences, notices PACKAGE TARGET [CARGO ARGUMENT...], or site FOLDER [RELEASE]"),
+    }
+}
+
+fn site(folder: &str, release: Option<&str>) -> anyhow::Result<(String, bool)> {
+    site::complete(Path::new(folder), release.map(Path::new))?;
+    links::check(Path::new(folder))
+}

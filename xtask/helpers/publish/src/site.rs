@@ -1,0 +1,95 @@
+//! What the site has beside the page and rustdoc: the guides, the downloads, and the way from one to the other.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::Context as _;
+use xtask::folders::{copy, root, write};
+use xtask::release::{SUMMARY, SUMS};
+
+use crate::guides;
+
+/// The style sheet after the palette.
+const STYLE: &str = include_str!("../site/style.css");
+/// The page's place for the links to the other pages.
+const PLACE: &str = "<!-- SITE -->";
+/// The folder of the files of a release in the site.
+const DOWNLOADS: &str = "downloads";
+const NO_FILES: &str = "# Downloads\n\nThis copy of the site was made without the files of a release. `cargo xtask release` \
+                        makes them: [what to build for whom](guides/index.html#to-be-had-without-being-built).\n";
+
+/// Completes a folder that has the page and rustdoc. `release` is a folder with the files of a release.
+///
+/// # Errors
+/// Fails if a file is missing or cannot be written.
+pub fn complete(site: &Path, release: Option<&Path>) -> anyhow::Result<()> {
+    guides::write_all(site)?;
+    write(&site.join(guides::FOLDER).join("style.css"), style()?)?;
+    let place = Path::new("downloads.html");
+    let text = match release {
+        Some(release) => downloads(site, release)?,
+        None => NO_FILES.to_owned(),
+    };
+    let guide = guides::guide(&text, |target| Some(target.to_owned()));
+    write(&site.join(place), guides::page(place, &guide.title, &guide.body))?;
+    let page = site.join("index.html");
+    let text = read(&page)?;
+    let (before, after) = text.split_once(PLACE).with_context(|| format!("the page has no {PLACE}"))?;
+    // The page itself is the first of the links.
+    let links = guides::navigation(Path::new("index.html"));
+    let links = links.split_once('\n').map_or("", |(_, others)| others).trim();
+    write(&page, [before, links, after].concat())
+}
+
+/// Returns the page's palette, and the style of the guides.
+fn style() -> anyhow::Result<String> {
+    let page = read(&root().join("app/vr/web/page/style.css"))?;
+    let (palette, _) =
+        page.split_once("\n* {").context("the page's style has no palette at its beginning")?;
+    Ok(format!("{palette}\n{STYLE}"))
+}
+
+/// Copies the files of a release into the site, and returns their description.
+fn downloads(site: &Path, release: &Path) -> anyhow::Result<String> {
+    let (mut text, sums) = (read(&release.join(SUMMARY))?, read(&release.join(SUMS))?);
+    for name in sums.lines().filter_map(|line| line.split_once("  ")).map(|(_, name)| name) {
+        copy(&release.join(name), &site.join(DOWNLOADS).join(name))?;
+        text = text.replace(&format!("| `{name}` |"), &format!("| [`{name}`]({DOWNLOADS}/{name}) |"));
+    }
+    copy(&release.join(SUMS), &site.join(DOWNLOADS).join(SUMS))?;
+    Ok(format!("{text}\n## Checksums\n\n[{SUMS}]({DOWNLOADS}/{SUMS})\n\n```text\n{sums}```\n"))
+}
+
+fn read(path: &Path) -> anyhow::Result<String> {
+    fs::read_to_string(path).with_context(|| format!("{} cannot be read", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::links;
+
+    /// rustdoc and the page's files are stand-ins here; `cargo xtask site` checks all of the site.
+    #[test]
+    fn no_link_of_the_site_is_dead() {
+        let folder = tempfile::tempdir().unwrap();
+        let (site, release) = (folder.path().join("site"), folder.path().join("release"));
+        write(&site.join("index.html"), format!("<nav>{PLACE}</nav>")).unwrap();
+        write(&site.join("icon.svg"), "").unwrap();
+        write(&site.join("api/yoro/index.html"), "").unwrap();
+        complete(&site, None).unwrap();
+        let (report, passed) = links::check(&site).unwrap();
+        assert!(passed, "{report}");
+        let page = read(&site.join("index.html")).unwrap();
+        assert!(page.starts_with("<nav><a href=\"guides/docs/method.html\">How it works</a>"), "{page}");
+
+        write(&site.join("index.html"), PLACE).unwrap();
+        write(&release.join("yoro.apk"), "").unwrap();
+        write(&release.join(SUMS), "e3b0  yoro.apk\n").unwrap();
+        write(&release.join(SUMMARY), "# yoro\n\n| file |\n|---|\n| `yoro.apk` |\n").unwrap();
+        complete(&site, Some(&release)).unwrap();
+        assert!(read(&site.join("downloads.html")).unwrap().contains("href=\"downloads/yoro.apk\""));
+        let (report, passed) = links::check(&site).unwrap();
+        assert!(passed, "{report}");
+    }
+}

@@ -1,0 +1,25 @@
+//! The licences of others: what dependencies may have, and the notices that go along with each file that contains them.
+
+use crate::{console, publish};
+
+/// The name of the notices in archives, in the APK and beside the page.
+pub const FILE: &str = "NOTICES.txt";
+
+/// Returns the notices of everything that a package contains for a target, built with these arguments of cargo's.
+///
+/// # Errors
+/// Fails if a licence is not accepted, or cargo fails.
+pub fn text(package: &str, target: &str, features: &[&str]) -> anyhow::Result<String> {
+    let (text, _) = publish::run(&[&["notices", package, target], features].concat())?;
+    Ok(text)
+}
+
+/// Checks the licences of all dependencies, and prints those that are not accepted. Returns true if all are.
+///
+/// # Errors
+/// Fails if cargo fails.
+pub fn are_accepted() -> anyhow::Result<bool> {
+    let (report, passed) = publish::run(&["licences"])?;
+    console::print(&report);
+    Ok(passed)
+}

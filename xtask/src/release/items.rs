@@ -1,0 +1,292 @@
+//! The files of a release: what makes them, whom they are for, how they were tested.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use clap::ValueEnum;
+
+use crate::android::{self, Options, check};
+use crate::folders::{copy, copy_folder, remove, target_folder};
+use crate::package::{Target, VERSION, package};
+use crate::{cargo, kit, lint};
+
+use super::{bills, program};
+
+/// A part of a release.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Item {
+    /// The program for Linux on this machine's processor
+    Program,
+    /// The program for Linux on arm64
+    ProgramAarch64,
+    /// The APKs and the bundle
+    Apk,
+    /// The OpenXR layer for Linux and Android
+    Layer,
+    /// The C library for Linux and Android
+    Library,
+    /// The shader kit
+    Kit,
+    /// The add-on for Godot
+    Godot,
+    /// The crates
+    Crates,
+    /// The package for three.js
+    Three,
+    /// The bills of materials (SBOM)
+    Bills,
+    /// The site
+    Site,
+}
+
+/// True if the same commit gives the same bytes again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Same {
+    /// On any machine.
+    Anywhere,
+    /// With the same compilers.
+    Compilers,
+    /// With the same compilers and the same key.
+    Key,
+}
+
+/// What RELEASE.md says about files whose names contain a part.
+pub struct Description {
+    /// Parts of the names.
+    pub parts: [&'static str; 2],
+    pub title: &'static str,
+    pub tested: &'static str,
+    pub untested: &'static str,
+    pub same: Same,
+}
+
+const NO_DEVICE: &str = "a device";
+
+/// The descriptions, the first that fits counts.
+pub const DESCRIPTIONS: [Description; 14] = [
+    Description {
+        parts: ["yoro-", ".cdx.json"],
+        title: "what is in a file, in CycloneDX 1.5",
+        tested: "",
+        untested: "",
+        same: Same::Anywhere,
+    },
+    Description {
+        parts: ["yoro-openxr-layer", "linux"],
+        title: "OpenXR applications that render one view",
+        tested: "x86_64: hello_xr on Monado; arm64: it is linked",
+        untested: "a headset, Steam Frame",
+        same: Same::Compilers,
+    },
+    Description {
+        parts: ["yoro-openxr-layer", ".aar"],
+        title: "the same for Android applications",
+        tested: "the simulated Android host",
+        untested: NO_DEVICE,
+        same: Same::Compilers,
+    },
+    Description {
+        parts: ["libyoro", "linux"],
+        title: "C, C++ and others: pkg-config, CMake",
+        tested: "x86_64: its README's commands, pictures against Rust's; arm64: it is linked",
+        untested: "arm64 devices",
+        same: Same::Compilers,
+    },
+    Description {
+        parts: ["yoro-", "linux-x86_64.tar.xz"],
+        title: "the program: render, measure, stream, OpenXR",
+        tested: "all tests; a picture in a bare Debian",
+        untested: "headsets",
+        same: Same::Compilers,
+    },
+    Description {
+        parts: ["yoro-", "linux-aarch64.tar.xz"],
+        title: "the program for arm64, Steam Frame, without `serve`",
+        tested: "a picture in qemu",
+        untested: "Steam Frame",
+        same: Same::Compilers,
+    },
+    Description {
+        parts: ["yoro-", "-quest.apk"],
+        title: "Meta's store",
+        tested: "check-apk --store quest; its library in the simulated Android host",
+        untested: "a Quest, the store",
+        same: Same::Key,
+    },
+    Description {
+        parts: ["yoro-", ".apk"],
+        title: "phones, all headsets, sideloading",
+        tested: "check-apk, the simulated Android host",
+        untested: NO_DEVICE,
+        same: Same::Key,
+    },
+    Description {
+        parts: ["yoro-", ".aab"],
+        title: "Google Play, phones and Android XR",
+        tested: "check-apk --store play",
+        untested: "a device, bundletool, the store",
+        same: Same::Key,
+    },
+    Description {
+        parts: ["yoro-", ".aar"],
+        title: "the C library for Android, by prefab",
+        tested: "it is linked with public names alone",
+        untested: NO_DEVICE,
+        same: Same::Compilers,
+    },
+    Description {
+        parts: ["yoro-kit", ".zip"],
+        title: "engines that want no library: shaders and a header",
+        tested: "pictures against the library's",
+        untested: "",
+        same: Same::Anywhere,
+    },
+    Description {
+        parts: ["yoro-godot", ".zip"],
+        title: "Godot",
+        tested: "Godot opens it, pictures against its second camera",
+        untested: "GPUs",
+        same: Same::Anywhere,
+    },
+    Description {
+        parts: ["yoro-three", ".tgz"],
+        title: "three.js",
+        tested: "installed and bundled, pictures against three's own eyes",
+        untested: "headsets",
+        same: Same::Anywhere,
+    },
+    Description {
+        parts: ["", ".crate"],
+        title: "Rust, as the registry takes them",
+        tested: "all tests",
+        untested: "",
+        same: Same::Anywhere,
+    },
+];
+
+impl Item {
+    /// All items, in the order in which they are made.
+    pub const ALL: [Item; 11] = [
+        Item::Program,
+        Item::ProgramAarch64,
+        Item::Apk,
+        Item::Layer,
+        Item::Library,
+        Item::Kit,
+        Item::Godot,
+        Item::Crates,
+        Item::Three,
+        Item::Bills,
+        Item::Site,
+    ];
+
+    /// Returns the name on the command line.
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// Makes the item's files, and returns their paths. The site is a folder, and made of the others.
+    ///
+    /// # Errors
+    /// Fails if something is missing or does not compile.
+    pub fn make(self) -> anyhow::Result<Vec<PathBuf>> {
+        let folder = target_folder()?.join("package");
+        fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+        match self {
+            Item::Program => Ok(vec![program::native(&folder)?]),
+            Item::ProgramAarch64 => Ok(vec![program::aarch64(&folder)?]),
+            Item::Apk => apks(&folder),
+            Item::Layer => package(&[Target::LayerLinux, Target::LayerLinuxAarch64, Target::AndroidLayer]),
+            Item::Library => package(&[Target::Linux, Target::LinuxAarch64, Target::Android]),
+            Item::Kit => Ok(vec![zip(&kit::kit()?, &format!("yoro-kit-{VERSION}"), &folder)?]),
+            Item::Godot => package(&[Target::Godot]),
+            Item::Crates => crates(),
+            Item::Three => package(&[Target::Three]),
+            Item::Bills => bills::make(&folder),
+            Item::Site => Ok(Vec::new()),
+        }
+    }
+}
+
+/// Builds the APKs and the bundle, under names with the version.
+fn apks(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let options = Options { release: true, yes: true, openxr_loaders: Vec::new(), bundle: true, quest: true };
+    let apk = android::apk(&options)?;
+    let mut made = Vec::new();
+    for (suffix, extension) in [("", "apk"), ("-quest", "apk"), ("", "aab")] {
+        let built = apk.with_file_name(format!("yoro{suffix}")).with_extension(extension);
+        let named = folder.join(format!("yoro-{VERSION}{suffix}.{extension}"));
+        copy(&built, &named)?;
+        made.push(named);
+    }
+    Ok(made)
+}
+
+/// Packs a folder as a zip whose files are in a folder of the same name.
+fn zip(from: &Path, name: &str, folder: &Path) -> anyhow::Result<PathBuf> {
+    let content = folder.join(format!("{name}.files"));
+    remove(&content)?;
+    copy_folder(from, &content.join(name))?;
+    let packed = folder.join(format!("{name}.zip"));
+    check::pack(&packed, &content)?;
+    remove(&content)?;
+    println!("{}", packed.display());
+    Ok(packed)
+}
+
+/// Packs the published crates, and returns their files.
+fn crates() -> anyhow::Result<Vec<PathBuf>> {
+    let target = target_folder()?;
+    let mut made = Vec::new();
+    let workspace: Vec<&str> = lint::PUBLISHED.iter().flat_map(|name| ["--package", name]).collect();
+    let plugin = ["--manifest-path", "app/engines/bevy/Cargo.toml"];
+    let kinds: [(&[&str], &[&str], PathBuf); 2] =
+        [(&workspace, &lint::PUBLISHED, target.clone()), (&plugin, &["bevy_yoro"], target.join("bevy"))];
+    for (which, names, target) in kinds {
+        let place = target.display().to_string();
+        let mut arguments = vec!["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"];
+        arguments.extend(["--target-dir", &place]);
+        arguments.extend(which);
+        if !cargo::succeeds(&arguments, &[]) {
+            bail!("the crates cannot be packed: see above");
+        }
+        made.extend(names.iter().map(|name| target.join("package").join(format!("{name}-{VERSION}.crate"))));
+    }
+    Ok(made)
+}
+
+impl Description {
+    /// Returns the description of a file, if it is one of a release.
+    pub fn of(name: &str) -> Option<&'static Description> {
+        DESCRIPTIONS.iter().find(|description| {
+            let [beginning, other] = description.parts;
+            name.starts_with(beginning) && name.contains(other)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_is_described() {
+        for (name, title) in [
+            ("yoro-0.1.0-linux-x86_64.tar.xz", "the program: render"),
+            ("libyoro-0.1.0-linux-x86_64.tar.xz", "C, C++"),
+            ("yoro-openxr-layer-0.1.0-linux-aarch64.tar.xz", "OpenXR applications"),
+            ("yoro-openxr-layer-0.1.0.aar", "the same for Android"),
+            ("yoro-0.1.0-quest.apk", "Meta"),
+            ("yoro-0.1.0.apk", "phones"),
+            ("yoro-0.1.0.aar", "the C library"),
+            ("yoro-gl-0.1.0.crate", "Rust"),
+            ("bevy_yoro-0.1.0.crate", "Rust"),
+            ("yoro-0.1.0.apk.cdx.json", "what is in"),
+        ] {
+            let description = Description::of(name).unwrap();
+            assert!(description.title.starts_with(title), "{name}: {}", description.title);
+        }
+        assert!(Description::of("notes.txt").is_none());
+    }
+}

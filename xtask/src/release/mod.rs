@@ -1,0 +1,109 @@
+//! Everything that is published, in one folder: `cargo xtask release`.
+
+mod bills;
+mod items;
+mod program;
+mod summary;
+
+use std::fs;
+use std::path::{Path, PathBuf, absolute};
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context as _, bail};
+
+use crate::folders::{copy, copy_folder, remove, root, write};
+use crate::site;
+
+pub use items::Item;
+
+/// The checksums of all files, as `sha256sum --check` reads them.
+pub const SUMS: &str = "SHA256SUMS";
+/// What each file is for.
+pub const SUMMARY: &str = "RELEASE.md";
+
+/// Builds these items, or all if none is given, into a folder. Files of other items that are in it stay.
+///
+/// # Errors
+/// Fails if something is missing or does not compile.
+pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
+    let start = Instant::now();
+    let out = absolute(out).context("the current folder is gone: change to another")?;
+    fs::create_dir_all(&out).with_context(|| format!("{} cannot be made", out.display()))?;
+    let items: Vec<Item> = if only.is_empty() { Item::ALL.to_vec() } else { in_order(only) };
+    let mut times = Vec::new();
+    for item in items.iter().filter(|item| **item != Item::Site) {
+        let begin = Instant::now();
+        println!("release: {}", item.name());
+        for made in item.make()? {
+            let name = made.file_name().context("a file without a name was made")?;
+            if made.is_dir() {
+                bail!("{} is a folder: it cannot be published", made.display());
+            }
+            copy(&made, &out.join(name))?;
+        }
+        times.push((item.name(), begin.elapsed()));
+    }
+    let commit = commit()?;
+    if !files(&out)?.is_empty() {
+        write_sums(&out)?;
+        write(&out.join(SUMMARY), summary::text(&out, &commit)?)?;
+    }
+    if items.contains(&Item::Site) {
+        let begin = Instant::now();
+        println!("release: {}", Item::Site.name());
+        let has_files = !files(&out)?.is_empty();
+        let built = site::build(has_files.then_some(&*out))?;
+        let folder = out.join("site");
+        remove(&folder)?;
+        copy_folder(&built, &folder)?;
+        times.push((Item::Site.name(), begin.elapsed()));
+    }
+    for (name, time) in times {
+        println!("{name:16} {:>5} s", time.as_secs());
+    }
+    println!("{} in {} s", out.display(), start.elapsed().as_secs());
+    Ok(())
+}
+
+/// Returns the items without duplicates, in the order in which they have to be made.
+fn in_order(items: &[Item]) -> Vec<Item> {
+    Item::ALL.into_iter().filter(|item| items.contains(item)).collect()
+}
+
+/// Returns the commit that is built, and says if there are changes beside it.
+fn commit() -> anyhow::Result<String> {
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").current_dir(root()).args(arguments).output();
+        let output = output.context("git cannot be started: apt-get install git")?;
+        if !output.status.success() {
+            bail!("git {} failed: a release is built from a clone", arguments[0]);
+        }
+        Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    let commit = git(&["rev-parse", "HEAD"])?;
+    let is_clean = git(&["status", "--porcelain"])?.is_empty();
+    Ok(if is_clean { commit } else { format!("{commit}, with changes that were not committed") })
+}
+
+/// Returns the files in the folder that are published, by name: not those that describe them.
+fn files(out: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(out).with_context(|| format!("{} cannot be read", out.display()))?;
+    let mut found = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;
+    found.retain(|path| path.is_file() && !path.ends_with(SUMS) && !path.ends_with(SUMMARY));
+    found.sort();
+    Ok(found)
+}
+
+/// Writes the checksums of all files.
+fn write_sums(out: &Path) -> anyhow::Result<()> {
+    let names = files(out)?.into_iter().filter_map(|path| path.file_name().map(ToOwned::to_owned));
+    let sums = out.join(SUMS);
+    let mut command = Command::new("sha256sum");
+    let output = command.args(names).current_dir(out).output();
+    let output = output.context("sha256sum cannot be started: apt-get install coreutils")?;
+    if !output.status.success() {
+        bail!("sha256sum failed: {}", String::from_utf8_lossy(&output.stderr).trim());
+    }
+    write(&sums, output.stdout)
+}

@@ -1,0 +1,72 @@
+//! `RELEASE.md`: what each file is for, how it was tested, what no device has run.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use anyhow::Context as _;
+
+use crate::notices;
+use crate::package::VERSION;
+
+use super::SUMS;
+use super::items::{Description, Same};
+
+/// Returns the text for the files in a folder, which were built from a commit.
+///
+/// # Errors
+/// Fails if the folder cannot be read.
+pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
+    let mut text = format!(
+        "# yoro {VERSION}\n\
+         \n\
+         Built from {commit}. `sha256sum --check {SUMS}` checks the files. What contains code of others has its `{}`\n\
+         inside.\n\
+         \n\
+         **No phone and no headset has run any of it.** *Tested by* says what took a device's place.\n\
+         \n\
+         | file | bytes | for | tested by | not tested on | same bytes again |\n\
+         |---|---|---|---|---|---|\n",
+        notices::FILE
+    );
+    for path in super::files(out)? {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let size = fs::metadata(&path).with_context(|| format!("{} cannot be read", path.display()))?.len();
+        let Some(description) = Description::of(&name) else { continue };
+        let Description { title, tested, untested, same, .. } = description;
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "| `{name}` | {size} | {title} | {tested} | {untested} | {} |", again(*same));
+    }
+    text.push_str(
+        "\n\"Same bytes again\": whether the same commit gives the same file. With *the same compilers*: rustc, and clang or gcc,\n\
+         of the same versions. A key signs APKs; another key gives other bytes.\n",
+    );
+    Ok(text)
+}
+
+fn again(same: Same) -> &'static str {
+    match same {
+        Same::Anywhere => "yes",
+        Same::Compilers => "with the same compilers",
+        Same::Key => "with the same compilers and key",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_for_each_file() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["yoro-0.1.0.apk", "yoro-0.1.0.crate", SUMS, "unknown"] {
+            fs::write(folder.path().join(name), "four").unwrap();
+        }
+        let text = text(folder.path(), "abc").unwrap();
+        assert!(
+            text.contains("Built from abc.") && text.contains("| `yoro-0.1.0.apk` | 4 | phones"),
+            "{text}"
+        );
+        assert_eq!(text.matches("\n| `").count(), 2, "{text}");
+    }
+}
