@@ -1,7 +1,14 @@
 // The eye's image through the lens. It is looked up by direction, so that it can be turned (timewarp), and fades
 // towards the borders of the lens and of the image.
 
-uniform sampler2D image;  // display-referred sRGB, as the screen takes it
+// The image is display-referred sRGB, as the screen takes it: one texture, or levels that are composed on the way.
+#ifdef LEVELS
+#include "include/levels.glsl"
+#define IMAGE(uv) composed(uv)
+#else
+uniform sampler2D image;
+#define IMAGE(uv) texture(image, uv)
+#endif
 uniform vec4 frustum;     // left, bottom, width, height of the image in tangents
 uniform float border;     // width of the fade at a border, as a part of the image
 
@@ -28,11 +35,11 @@ void main() {
     vec2 green_uv = image_uv(green_direction);
 #ifdef CHROMATIC
     vec3 color = vec3(
-        texture(image, image_uv(red_direction)).r,
-        texture(image, green_uv).g,
-        texture(image, image_uv(blue_direction)).b);
+        IMAGE(image_uv(red_direction)).r,
+        IMAGE(green_uv).g,
+        IMAGE(image_uv(blue_direction)).b);
 #else
-    vec3 color = texture(image, green_uv).rgb;
+    vec3 color = IMAGE(green_uv).rgb;
 #endif
     // A turned image may end before the lens does.
     out_color = vec4(color * min(inside(lens_uv), inside(green_uv)), 1.0);

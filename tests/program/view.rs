@@ -47,6 +47,21 @@ fn both_eyes_behind_their_lenses() {
     assert!(synthesized < 0.7 * same, "{synthesized} synthesized, {same} without stereo");
 }
 
+/// The lenses' pass composes the levels: what it shows around each axis is as it is without.
+#[test]
+fn the_border_is_coarser_and_the_middle_is_not() {
+    let dir = tempfile::tempdir().unwrap();
+    let [all, foveated] =
+        ["off", "medium"].map(|level| view(dir.path(), &format!("prototype --no-hud --foveation {level}")));
+    let middle = difference(&all, &foveated);
+    assert!(middle < 0.5, "{middle} grey levels in the middle");
+    let around = |image: &RgbImage| image.pixels().map(|pixel| u64::from(pixel.0[1])).sum::<u64>();
+    assert!(all != foveated);
+    // The same scene around it: as bright, but for less than 3 %.
+    let [all, foveated] = [&all, &foveated].map(|image| around(image) as f64);
+    assert!((all - foveated).abs() < 0.03 * all, "{all} {foveated}");
+}
+
 /// Regression test: the program ended with a segmentation fault, because objects were deleted after their context.
 #[test]
 fn objects_keep_their_context() {

@@ -23,7 +23,7 @@ struct Arguments {
 enum Command {
     Bench(Box<cli::bench::BenchArgs>),
     Run(cli::run::RunArgs),
-    Render(cli::render::RenderArgs),
+    Render(Box<cli::render::RenderArgs>),
     Synthesize(cli::synthesize::SynthesizeArgs),
     Report(cli::report::ReportArgs),
     Compare(cli::compare::CompareArgs),
@@ -43,7 +43,7 @@ impl Command {
         match self {
             Command::Bench(args) => &**args,
             Command::Run(args) => args,
-            Command::Render(args) => args,
+            Command::Render(args) => &**args,
             Command::Synthesize(args) => args,
             Command::Report(args) => args,
             Command::Compare(args) => args,

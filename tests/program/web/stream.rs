@@ -295,7 +295,7 @@ fn a_headset_shows_a_stream() {
     page.until("yoro.stream.frames > 4");
     assert_eq!(page.message(), None);
     let (views, eyes) = headset::seen(&mut page);
-    let real = headset::headset_pictures(&views, [eyes[0].width(), eyes[0].height()]);
+    let real = headset::headset_pictures(&views, [eyes[0].width(), eyes[0].height()], "off");
     let of = |shown: usize, eye: usize| psnr(&eyes[shown], &real[eye], Channels::Luma).unwrap().0;
     let (left, right, same) = (of(0, 0), of(1, 1), of(1, 0));
     eprintln!("left {left:.2} dB, right {right:.2} dB, the same image to both eyes {same:.2} dB");

@@ -3,10 +3,11 @@
 use std::rc::Rc;
 
 use image::{Rgb, RgbImage};
-use yoro::eyes::Eye;
+use yoro::eyes::{Eye, EyeOptions, Foveation, Gaze};
 use yoro_context::Headless;
 use yoro_gl::Context;
-use yoro_render::stereo::{Pipeline, stills};
+use yoro_render::stereo::{LevelFrame, Method, Pipeline, SelectedMethod, StereoFrame, StereoOptions, stills};
+use yoro_render::{PreparedScene, RenderSettings};
 use yoro_tests::{backends, golden};
 
 const SIZE: u32 = 256;
@@ -53,6 +54,26 @@ fn scenes_give_their_golden_images() {
         let frames = render(headless.gl(), name, &[Pipeline::default()]).unwrap();
         check(&[(name.to_owned(), &frames[0][0])]);
     }
+}
+
+/// An eye of 90 degrees that is composed of its levels: all pixels to 20 degrees, half of them along each axis beyond.
+#[test]
+fn a_foveated_eye_gives_its_golden_image() -> anyhow::Result<()> {
+    let headless = Headless::open(backends()[0])?;
+    let gl = headless.gl();
+    let scene = yoro_scenes::build("prototype", yoro_scenes::DEFAULT_SEED)?;
+    let eyes = EyeOptions { size: [SIZE; 2], fov_y: 90f32.to_radians(), ..EyeOptions::default() };
+    let pair = eyes.pair(scene.viewpoints[0].pose());
+    let foveation = Foveation::MEDIUM;
+    let options = StereoOptions { inset: Some(foveation.nearest), policy: None, ..StereoOptions::default() };
+    let settings = RenderSettings::default();
+    let PreparedScene { scene, mut renderer, .. } = PreparedScene::new(gl, scene, &settings)?;
+    let mut method = SelectedMethod::new(gl, Method::Synthesized.into(), &settings, &options)?;
+    let (mut levels, frame) = (LevelFrame::new(gl, false)?, StereoFrame::new(gl, pair.size)?);
+    let places = pair.levels(Some(&foveation), Gaze::Axes(pair.axes()), options.guard_band)?;
+    levels.render(&mut method, (&mut renderer, &scene), &places, &frame.colors())?;
+    check(&[("prototype-foveated".to_owned(), &image(&frame.rgba(Eye::Left)))]);
+    Ok(())
 }
 
 #[test]

@@ -286,8 +286,21 @@ impl Meter {
         // Only reversed depth can be carried.
         let depth = DepthRange { convention: DepthConvention::Reversed, ..pair.depth };
         let views = EyePair { depth, ..*pair }.synthesis_views(GuardBand::Distance(1.0))?;
-        prepared.synthesize(&mut self.counting, &mut self.targets, &views, &mut self.counts)?;
-        Ok((views, self.counts.read_rgba8(0, [0, 0], pair.size)))
+        let pixels = self.count_views(prepared, &views)?;
+        Ok((views, pixels))
+    }
+
+    /// Returns the counts at the synthesized eye's pixels for views whose depth is reversed.
+    ///
+    /// # Errors
+    /// Those of [`Meter::measure`].
+    pub fn count_views(
+        &mut self,
+        prepared: &mut PreparedScene,
+        views: &SynthesisViews,
+    ) -> anyhow::Result<Vec<u8>> {
+        prepared.synthesize(&mut self.counting, &mut self.targets, views, &mut self.counts)?;
+        Ok(self.counts.read_rgba8(0, [0, 0], views.target.size))
     }
 
     /// Returns the values of a counted frame whose eyes have this size, by metric, with this variant of the march.

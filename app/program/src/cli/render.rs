@@ -14,10 +14,10 @@ use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::message;
 use crate::cli::outputs::Files;
-use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
+use crate::cli::settings::{self, Foveated, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use crate::cli::video::{self, EncodingArgs};
-use yoro::eyes::{Eye, Pose};
+use yoro::eyes::{Eye, Gaze, Pose};
 use yoro_assets::{CameraPath, ShadingStyle};
 use yoro_bench::bench::BlankFinder;
 use yoro_files::interrupt;
@@ -25,7 +25,9 @@ use yoro_gl::Context;
 use yoro_media::rgb_image;
 use yoro_metrics::{Channels, Quality, error_map};
 use yoro_render::PreparedScene;
-use yoro_render::stereo::{self, Method, StereoFrame};
+use yoro_render::stereo::{
+    self, LevelFrame, Method, SelectedMethod, StereoFrame, StereoMethod as _, StereoOptions,
+};
 
 /// A picture made from the two eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -122,6 +124,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     stereo: SettingOptions<Stereo>,
     #[command(flatten)]
+    foveated: SettingOptions<Foveated>,
+    #[command(flatten)]
     renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     gl: GlArgs,
@@ -169,7 +173,10 @@ impl Subcommand for RenderArgs {
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;
         match &self.video {
-            Some(_) => self.stereo.check_effect("on a video", |key| key == "guard-band")?,
+            Some(_) => {
+                self.stereo.check_effect("on a video", |key| key == "guard-band")?;
+                self.foveated.check_effect("on a video", |_| false)?;
+            }
             None => self.stereo.check(&[self.method], &[self.stereo.settings().pipeline])?,
         }
         let settings = self.renderer.render_settings();
@@ -184,7 +191,8 @@ impl Subcommand for RenderArgs {
             (None, Some(n)) => path.poses(n as usize),
             (None, None) => vec![eyes::scene_pose(&scene, self.pose)?],
         };
-        let options = self.stereo.options();
+        let foveation = self.foveated.foveation();
+        let options = StereoOptions { inset: foveation.map(|it| it.nearest), ..self.stereo.options() };
         if self.video.is_some() {
             video::check_size(&self.eyes, options.guard_band)?;
         }
@@ -201,7 +209,8 @@ impl Subcommand for RenderArgs {
             return video::render(gl, file, prepared, (&heads, self.time), (&self.eyes, &options), encoding);
         }
         let PreparedScene { mut scene, mut renderer } = prepared;
-        let mut method = stereo::create(gl, self.method, &settings, &options)?;
+        let mut method = SelectedMethod::new(gl, self.method.into(), &settings, &options)?;
+        let mut levels = foveation.map(|_| LevelFrame::new(gl, false)).transpose()?;
         let measured = self.measure || self.outputs.iter().any(|o| o.needs_truth());
         let mut truth =
             measured.then(|| stereo::create(gl, Method::Conventional, &settings, &options)).transpose()?;
@@ -214,7 +223,14 @@ impl Subcommand for RenderArgs {
             let pair = self.eyes.pair(head);
             let start = Instant::now();
             renderer.set_time(&mut scene, self.time + i as f64 / f64::from(self.frame_rate))?;
-            method.render(&mut renderer, &scene, &pair, &mut frame)?;
+            match &mut levels {
+                Some(own) => {
+                    let gaze = Gaze::Axes(pair.axes());
+                    let levels = pair.levels(foveation.as_ref(), gaze, options.guard_band)?;
+                    own.render(&mut method, (&mut renderer, &scene), &levels, &frame.colors())?;
+                }
+                None => method.render(&mut renderer, &scene, &pair, &mut frame)?,
+            }
             gl.finish();
             let milliseconds = start.elapsed().as_secs_f64() * 1e3;
             let eyes = Eye::BOTH.map(|eye| rgb_image(&frame.rgba(eye), frame.size()));

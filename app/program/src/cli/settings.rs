@@ -8,6 +8,7 @@ use anyhow::bail;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
+use yoro::eyes::Foveation;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Method, Pipeline, PipelineOptions, StereoOptions};
 use yoro_settings::{FrameRate, Setting, Settings};
@@ -71,7 +72,15 @@ impl Group for Stereo {
 pub struct Lenses;
 
 impl Group for Lenses {
-    const KEYS: &'static [&'static str] = &["viewer", "method"];
+    const KEYS: &'static [&'static str] = &["viewer", "method", "foveation"];
+}
+
+/// The setting of frames in levels.
+#[derive(Clone, Copy, Debug)]
+pub struct Foveated;
+
+impl Group for Foveated {
+    const KEYS: &'static [&'static str] = &["foveation"];
 }
 
 /// The options of a [`Group`]: `--KEY VALUE`; for switches `--KEY`, or `--no-KEY` if they are on by default.
@@ -134,6 +143,13 @@ impl SettingOptions<Synthesis> {
     /// Returns the options of the pipeline.
     pub fn options(&self) -> PipelineOptions {
         stereo_options(&self.settings, self.settings.pipeline).synthesis
+    }
+}
+
+impl SettingOptions<Foveated> {
+    /// Returns the foveation, if any.
+    pub fn foveation(&self) -> Option<Foveation> {
+        self.settings.foveation.unwrap_or_default().foveation()
     }
 }
 

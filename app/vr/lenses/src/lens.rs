@@ -6,7 +6,8 @@ use std::rc::Rc;
 use glam::{Mat4, Quat, Vec2, Vec4};
 
 use crate::optics::{Optics, mesh_strip};
-use yoro::eyes::{Eye, Frustum};
+use yoro::eyes::{Composition, Eye, Frustum};
+use yoro::opengl::LevelImages;
 use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource, Texture};
 
 /// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are specified. For
@@ -22,20 +23,31 @@ const LINE_COLOR: [f32; 4] = [0.35, 0.35, 0.35, 1.0];
 pub struct LensPass {
     gl: Rc<Context>,
     program: Program,
+    /// Composes eyes of levels; `None` if there are none.
+    of_levels: Option<Program>,
     meshes: [Mesh; 2],
     frusta: [Frustum; 2],
     line: f32,
 }
 
 impl LensPass {
-    /// Compiles the program and makes the meshes for a viewer. `chromatic` enables chromatic correction.
+    /// Compiles the program and makes the meshes for a viewer. `chromatic` enables chromatic correction, and `levels` eyes
+    /// of levels.
     ///
     /// # Errors
     /// [`GlError`] if the driver refuses a program or a mesh.
-    pub fn new(gl: &Rc<Context>, optics: &Optics, chromatic: bool) -> Result<LensPass, GlError> {
-        let defines = if chromatic { vec![("CHROMATIC", String::new())] } else { Vec::new() };
-        let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
-        let program = Program::new(gl, source, &defines)?;
+    pub fn new(
+        gl: &Rc<Context>,
+        optics: &Optics,
+        chromatic: bool,
+        levels: bool,
+    ) -> Result<LensPass, GlError> {
+        let program = |levels: bool| {
+            let on = [("CHROMATIC", chromatic), ("LEVELS", levels)].into_iter().filter(|(_, on)| *on);
+            let defines: Vec<_> = on.map(|(name, _)| (name, String::new())).collect();
+            let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
+            Program::new(gl, source, &defines)
+        };
         let mesh = |eye| {
             // Position and uv of a `MeshVertex`.
             Mesh::new(gl, &[2, 2], &optics.mesh(eye), &mesh_strip())
@@ -43,18 +55,41 @@ impl LensPass {
         let meshes = [mesh(Eye::Left)?, mesh(Eye::Right)?];
         let frusta = Eye::BOTH.map(|eye| optics.frustum(eye));
         let line = LINE_WIDTH / optics.screen()[0];
-        Ok(LensPass { gl: gl.clone(), program, meshes, frusta, line })
+        Ok(LensPass {
+            gl: gl.clone(),
+            program: program(false)?,
+            of_levels: levels.then(|| program(true)).transpose()?,
+            meshes,
+            frusta,
+            line,
+        })
     }
 
     /// Fills the window from the images of the left and the right eye. `turn` rotates directions from the head's
     /// current frame to its frame when the images were rendered.
     pub fn run(&self, images: [&Texture; 2], turn: Quat, window: &Destination) {
+        self.draw(&self.program, turn, window, |eye| {
+            self.program.texture("image", 0, images[eye.index()].raw());
+        });
+    }
+
+    /// Like [`LensPass::run`], for eyes of levels, which are composed on the way: for each eye its images, filtered
+    /// linearly, and their places. Draws nothing if it was not made for levels.
+    pub fn run_levels(&self, eyes: &[(LevelImages, Composition); 2], turn: Quat, window: &Destination) {
+        let Some(program) = &self.of_levels else { return };
+        self.draw(program, turn, window, |eye| {
+            let (images, composition) = &eyes[eye.index()];
+            images.set(program, composition, [0, 0]);
+        });
+    }
+
+    fn draw(&self, program: &Program, turn: Quat, window: &Destination, set_eye: impl Fn(Eye)) {
         let [width, height] = window.size;
         self.gl.pass("lens", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
             self.gl.fill(window.origin, window.size, [0.0, 0.0, 0.0, 1.0]);
-            self.program
+            program
                 .bind()
                 .set("turn", Mat4::from_quat(turn))
                 .set("dispersion", Vec2::from(DISPERSION))
@@ -62,7 +97,8 @@ impl LensPass {
             for eye in Eye::BOTH {
                 let frustum = &self.frusta[eye.index()];
                 let rectangle = Vec4::new(frustum.left, frustum.bottom, frustum.width(), frustum.height());
-                self.program.texture("image", 0, images[eye.index()].raw()).set("frustum", rectangle);
+                program.set("frustum", rectangle);
+                set_eye(eye);
                 let mesh = &self.meshes[eye.index()];
                 mesh.bind();
                 mesh.draw_strip();
@@ -127,7 +163,7 @@ mod tests {
         let (eyes, window) = (marked_eyes(gl, &optics), window(gl));
         let images = eyes.each_ref().map(|eye| eye.color(0));
         for chromatic in [false, true] {
-            let lens = LensPass::new(gl, &optics, chromatic).unwrap();
+            let lens = LensPass::new(gl, &optics, chromatic, false).unwrap();
             lens.run(images, Quat::IDENTITY, &Destination::whole(&window));
             for (eye, color) in Eye::BOTH.into_iter().zip([[255, 0, 0, 255], [0, 0, 255, 255]]) {
                 let center = optics.lens_center(eye);
@@ -168,7 +204,7 @@ mod tests {
         let (gl, optics) = (headless.gl(), optics());
         let (eyes, window) = (marked_eyes(gl, &optics), window(gl));
         let images = eyes.each_ref().map(|eye| eye.color(0));
-        let lens = LensPass::new(gl, &optics, false).unwrap();
+        let lens = LensPass::new(gl, &optics, false, false).unwrap();
         let at = |turn| {
             lens.run(images, turn, &Destination::whole(&window));
             mark(&window, &optics)

@@ -13,7 +13,7 @@ use crate::choices::{
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
 use crate::value::SettingValue;
-use yoro::eyes::{Eye, GuardBand};
+use yoro::eyes::{Eye, FoveationLevel, GuardBand};
 
 /// The largest settings file in bytes.
 const MAX_FILE: u64 = 1 << 20;
@@ -162,6 +162,9 @@ settings! {
     /// Headsets: a factor on the size that the runtime recommends.
     "render-scale" render_scale: f32 = 1.0;
         range(|s| (0.25..=2.0).contains(&s.render_scale), "give a factor from 0.25 to 2"),
+    /// Render each eye at full density only around its axis, as far as 30 (`low`) or 20 degrees (`medium`, `high`). Beyond,
+    /// with half (`low`, `medium`) or a third of the pixels along each axis. Not with `timewarp=position`.
+    "foveation" foveation: Option<FoveationLevel> = None; auto("off"),
     /// Lower render scale and ImBuffer to hold the display's refresh rate and to spare a hot device.
     "adaptive" adaptive: bool = false,
     /// Phones: how the finished image follows the head after rendering. `position` copies the depth of both eyes and adds

@@ -1,7 +1,7 @@
 //! Reading and writing of values of each type of setting.
 
 use toml::Value;
-use yoro::eyes::{Eye, GuardBand};
+use yoro::eyes::{Eye, FoveationLevel, GuardBand};
 
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 
@@ -181,6 +181,13 @@ pub(crate) fn find<T: Copy>(all: &[T], name: impl Fn(T) -> &'static str, text: &
 named! {
     Eye: &[Choice::new("left", "The left eye"), Choice::new("right", "The right eye")],
         |text| find(&Eye::BOTH, Eye::name, text);
+    FoveationLevel: &[
+        Choice::new("off", "All pixels everywhere"),
+        Choice::new("low", "30 degrees, half of the pixels along each axis beyond"),
+        Choice::new("medium", "20 degrees, half of the pixels along each axis beyond"),
+        Choice::new("high", "20 degrees, a third of the pixels along each axis beyond"),
+    ],
+        |text| find(&FoveationLevel::ALL, FoveationLevel::name, text);
 }
 
 pub(crate) use named;

@@ -8,11 +8,10 @@ use crate::options::{render_settings, stereo_options};
 use crate::rate::RateChooser;
 use crate::scene_slot::Shown;
 use yoro::choice::Cost;
-use yoro::eyes::EyePair;
 use yoro_gl::{Context, GlError};
 use yoro_render::stereo::{
-    Auto, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, SelectedMethod,
-    StereoMethod as _, StereoOptions, Substituted,
+    Auto, EyeLevels, GuardBandUse, ImBufferSize, LevelTargets, Method, MethodChoice, Pipeline,
+    SelectedMethod, StereoMethod as _, StereoOptions, Substituted,
 };
 use yoro_settings::{FrameRate, Settings};
 
@@ -258,8 +257,8 @@ impl MethodSlot {
         &mut self,
         settings: &Settings,
         now_ns: i64,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
+        levels: &EyeLevels,
+        to: &LevelTargets,
     ) -> Result<bool, ViewerError> {
         if settings.frame_rate != FrameRate::Half || self.runtime_makes_frames {
             return Ok(false);
@@ -269,7 +268,7 @@ impl MethodSlot {
             let made = self.made.as_mut().ok_or(ViewerError::NoContext)?;
             let past = (now_ns - rendered_ns) as f32;
             let ahead = self.step_ns.map_or(0.0, |step| (past / step as f32).clamp(0.0, 1.0));
-            if made.show_again(pair, to, ahead)? {
+            if made.show_levels_again(levels, to, ahead)? {
                 self.was_shown_again = true;
                 return Ok(true);
             }
@@ -282,16 +281,16 @@ impl MethodSlot {
         Ok(false)
     }
 
-    /// Renders both eyes. Returns the use of the guard band, if there is anything to say about it.
+    /// Renders both eyes of all levels. Returns the use of the guard band, if there is anything to say about it.
     pub fn render(
         &mut self,
         shown: &mut Shown,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
+        levels: &EyeLevels,
+        to: &LevelTargets,
     ) -> Result<Option<GuardBandUse>, ViewerError> {
         let made = self.made.as_mut().ok_or(ViewerError::NoContext)?;
         made.compare(self.is_comparing)?;
-        made.render_to(&mut shown.renderer, &shown.scene, pair, to)?;
+        made.render_levels(&mut shown.renderer, &shown.scene, levels, to)?;
         let report = made.report();
         self.tell(report.substituted);
         Ok(report.guard_band)

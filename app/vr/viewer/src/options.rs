@@ -36,6 +36,7 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
         policy: settings.switch.then(NearFieldPolicy::default),
         half_rate: settings.frame_rate == FrameRate::Half,
         split_disparity: settings.split_disparity,
+        inset: settings.foveation.unwrap_or_default().foveation().map(|foveation| foveation.nearest),
     }
 }
 
@@ -58,6 +59,7 @@ mod tests {
                 "switch=false",
                 "frame-rate=half",
                 "split-disparity=2.5",
+                "foveation=low",
             ],
         );
         let [changed, default] = [changed.unwrap(), Settings::default()]

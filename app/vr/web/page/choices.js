@@ -48,6 +48,7 @@ export function apply() {
     method: settings.method, msaa: settings.msaa, ipd: settings.ipd / 1000, dominant: settings.dominant,
     // A viewer and a headset show both eyes, whatever the screen shows.
     display: app.busy?.immersive ? 'side-by-side' : settings.display,
+    foveation: app.busy?.name === 'headset' ? element('headset-foveation').value : 'off',
   }));
   keep();
   changed();

@@ -51,15 +51,6 @@ async function setRate(session) {
   else if (nearest !== session.frameRate) await session.updateTargetFrameRate(nearest).catch((error) => say(`The headset refuses ${nearest} frames a second: ${error.message}`));
 }
 
-/** Has the borders of the picture drawn with fewer pixels, as chosen, if the browser can. */
-function foveate(layer) {
-  const wanted = element('headset-foveation').value;
-  if (wanted === '') return;
-  // It is null or missing if the browser cannot.
-  if (typeof layer.fixedFoveation === 'number') layer.fixedFoveation = Number(wanted);
-  else say('This browser has no foveation for pages.');
-}
-
 async function enter(button) {
   const { gl } = app;
   const session = await navigator.xr.requestSession('immersive-vr', { optionalFeatures: ['local'] });
@@ -85,7 +76,8 @@ async function enter(button) {
     const layer = new XRWebGLLayer(session, gl, {
       antialias: false, alpha: false, depth: true, stencil: false, framebufferScaleFactor: app.settings.scale,
     });
-    foveate(layer);
+    // Its pixels are only copied: foveation there would save nothing.
+    if (typeof layer.fixedFoveation === 'number') layer.fixedFoveation = 0;
     const [depthNear, depthFar] = Headset.planes();
     await session.updateRenderState({ baseLayer: layer, depthNear, depthFar });
     await setRate(session);

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
-use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
+use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, FoveationLevel, Gaze, Levels, Pose};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{self, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions};
@@ -71,6 +71,8 @@ pub struct Settings {
     pub dominant: Eye,
     /// The way in which both eyes are shown.
     pub display: Display,
+    /// In a headset: how much of each eye is rendered with all pixels.
+    pub foveation: FoveationLevel,
 }
 
 impl Default for Settings {
@@ -82,6 +84,7 @@ impl Default for Settings {
             ipd: Ipd::DEFAULT,
             dominant,
             display: Display::SideBySide,
+            foveation: FoveationLevel::Off,
         }
     }
 }
@@ -103,7 +106,15 @@ impl Settings {
     /// Returns the methods' options. They differ from the desktop's in one: frames are never rendered twice because
     /// much of the view is near, since detecting that would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
-        StereoOptions { policy: None, ..StereoOptions::default() }
+        let inset = self.foveation.foveation().map(|foveation| foveation.nearest);
+        StereoOptions { policy: None, inset, ..StereoOptions::default() }
+    }
+
+    /// Returns the levels of a headset's eyes; `None` if they are rendered as a whole.
+    pub fn levels(&self, pair: &EyePair) -> Option<Levels> {
+        let foveation = self.foveation.foveation()?;
+        let (gaze, guard) = (Gaze::Axes(pair.axes()), self.stereo_options().guard_band);
+        pair.levels(Some(&foveation), gaze, guard).ok().filter(|levels| levels.inset.is_some())
     }
 
     /// Returns the method in use, or the automatic choice between two. Displays that compare with a real render never

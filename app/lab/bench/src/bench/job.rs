@@ -3,6 +3,7 @@
 use super::contender::Contender;
 use super::motion::Motion;
 use super::record::Conditions;
+use super::runner::WAYS;
 use yoro::eyes::EyeOptions;
 use yoro_assets::ShadingStyle;
 use yoro_estimate::Device;
@@ -25,6 +26,8 @@ pub enum Measure {
     Flicker,
     /// Use of the guard band along a part of the camera path.
     GuardBand,
+    /// Every level of foveation, by two renders and by synthesis.
+    Foveation,
     /// Patchers on reprojected images.
     Patchers,
     /// One render shown at another pose.
@@ -98,8 +101,12 @@ impl Job {
         if let Measure::Executed(_) | Measure::Reprojection(_) | Measure::HalfRate(_) = self.measure {
             return self.frames as u64;
         }
+        if self.measure == Measure::Foveation {
+            return u64::from(self.rounds) * (self.frames * WAYS) as u64;
+        }
         if self.measure == Measure::WholeFrames {
-            return (self.frames * self.contenders.len()) as u64;
+            // And the same two with levels.
+            return (self.frames * (self.contenders.len() + 2)) as u64;
         }
         (u64::from(self.rounds) * self.frames as u64 + 1) * self.contenders.len() as u64
     }

@@ -67,6 +67,7 @@ suites! {
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
     HalfRate "half-rate" "Quality and time of the frame between two renders: by a runtime from both eyes' motion or from one eye's, by depth alone, and by yoro",
+    Foveation "foveation" "Frame time, shaded pixels and quality of eyes with all pixels only where they look, by two renders and by synthesis, at 60 and 90 degrees",
     Stream "stream" "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs, and with --frame whole frames on six, none of which need be here",
 }
@@ -110,6 +111,8 @@ const FEW_LIGHTS: usize = 4;
 const FLICKER_FRAMES: [usize; 2] = [12, 4];
 /// The scenes of the suite `half-rate`: those with people who move.
 const MOVING_SCENES: [&str; 2] = ["talk", "stage"];
+/// The vertical fields of view of the suite `foveation` in degrees.
+const FOVEATED_DEGREES: [f32; 2] = [60.0, 90.0];
 /// The scenes of the suite `stream`.
 const STREAM_SCENES: [&str; 3] = ["talk", "street", "atrium"];
 /// The numbers of frames by which the suite `stream` shows frames late, at 72 per second: at once, after 28 and 69 ms.
@@ -184,6 +187,7 @@ impl Choices {
                 self.reprojection(sweep(Measure::Reprojection(Displaced::Canted), Vec::new()))
             }
             Suite::HalfRate => self.half_rate(sweep(Measure::HalfRate(Motion::Still), Vec::new())),
+            Suite::Foveation => self.foveation(sweep(Measure::Foveation, Vec::new()), &every),
             Suite::Stream => self.stream(sweep(Measure::Stream(0), Vec::new())),
             Suite::ShaderCost if self.whole_frames => {
                 self.whole_frames(sweep(Measure::WholeFrames, vec![Contender::CONVENTIONAL]), &every)
@@ -267,6 +271,16 @@ impl Choices {
             job.contenders.clear();
             job.measure = Measure::HalfRate(motion);
             job.conditions.label = Some(motion.name().to_owned());
+        })
+    }
+
+    fn foveation(&self, sweep: Sweep, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
+        let scenes = if self.quick { &QUICK_SCENES[..] } else { scenes };
+        sweep.over(self.scenes(scenes), FOVEATED_DEGREES, |job, degrees| {
+            // Levels of two methods take part, in an order of their own.
+            job.contenders.clear();
+            job.eyes.fov_y = degrees.to_radians();
+            job.conditions.label = Some(format!("{degrees} degrees"));
         })
     }
 
@@ -377,7 +391,7 @@ impl Sweep<'_> {
             contenders.insert(0, Contender::CONVENTIONAL);
         }
         let rounds = match self.measure {
-            Measure::Frames { cost: true, .. } | Measure::Patchers => choices.rounds,
+            Measure::Frames { cost: true, .. } | Measure::Foveation | Measure::Patchers => choices.rounds,
             _ => 1,
         };
         let points: Vec<P> = points.into_iter().collect();

@@ -8,7 +8,8 @@ use std::time::Instant;
 #[cfg(target_arch = "wasm32")]
 use web_time::Instant;
 
-use super::method::{EyeTarget, MethodReport, StereoError, StereoMethod, Substituted};
+use super::levels::{EyeLevels, LevelMethods, LevelTargets};
+use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod, Substituted};
 use super::options::{Method, MethodChoice, StereoOptions};
 use crate::view::{GpuScene, RenderSettings, Renderer};
 use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, Way};
@@ -31,7 +32,7 @@ pub struct SelectedMethod {
     method: Method,
     kind: Kind,
     /// Two renders, made when first needed.
-    both: Option<Box<dyn StereoMethod>>,
+    both: Option<LevelMethods>,
     /// True while both eyes are rendered for a comparison with the method.
     is_comparing: bool,
     /// The reason why the method could not use the last frame's eyes, if so.
@@ -40,7 +41,7 @@ pub struct SelectedMethod {
 
 enum Kind {
     /// Always this method.
-    Named(Box<dyn StereoMethod>),
+    Named(LevelMethods),
     /// The cheaper one.
     Auto(Box<Auto>),
 }
@@ -56,7 +57,7 @@ impl SelectedMethod {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<SelectedMethod, GlError> {
-        let named = |method| super::create(gl, method, settings, options).map(Kind::Named);
+        let named = |method| LevelMethods::new(gl, method, settings, options).map(Kind::Named);
         let kind = match choice {
             MethodChoice::Named(method) => named(method)?,
             // Turns of two methods would need renders of both.
@@ -111,54 +112,87 @@ impl SelectedMethod {
         self.both().map(drop)
     }
 
-    fn both(&mut self) -> Result<&mut dyn StereoMethod, GlError> {
+    fn both(&mut self) -> Result<&mut LevelMethods, GlError> {
         let made = match self.both.take() {
             Some(made) => made,
             None => {
                 let options = StereoOptions { half_rate: false, ..self.options };
-                super::create(&self.gl, Method::Conventional, &self.settings, &options)?
+                LevelMethods::new(&self.gl, Method::Conventional, &self.settings, &options)?
             }
         };
-        Ok(self.both.insert(made).as_mut())
+        Ok(self.both.insert(made))
     }
 
-    /// Returns the method to render a frame with whose eyes it can use.
-    fn chosen(&mut self) -> &mut dyn StereoMethod {
-        match &mut self.kind {
-            Kind::Named(method) => method.as_mut(),
-            Kind::Auto(auto) => auto.as_mut(),
-        }
-    }
-}
-
-impl StereoMethod for SelectedMethod {
-    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
-        self.chosen().prepare(renderer, scene)
-    }
-
-    /// Renders both eyes if neither can be synthesized from the other.
-    fn render_to(
+    /// Renders both eyes of all levels of a frame into their targets; both of each level if neither eye can be synthesized
+    /// from the other. Levels need [`StereoOptions::inset`].
+    ///
+    /// # Errors
+    /// As [`StereoMethod::render_level`].
+    pub fn render_levels(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
+        levels: &EyeLevels,
+        to: &LevelTargets,
     ) -> Result<(), StereoError> {
-        self.unfit = unfit(self.method, pair);
+        self.unfit = levels.pairs().find_map(|pair| unfit(self.method, pair));
         if self.unfit.is_none() && !self.is_comparing {
-            return self.chosen().render_to(renderer, scene, pair, to);
+            return match &mut self.kind {
+                Kind::Named(methods) => methods.render(renderer, scene, levels, to),
+                Kind::Auto(auto) => auto.render(renderer, scene, levels, to),
+            };
         }
         if let Kind::Auto(auto) = &mut self.kind {
             auto.skip_frame();
         }
-        self.both()?.render_to(renderer, scene, pair, to)
+        self.both()?.render(renderer, scene, levels, to)
+    }
+
+    /// Shows the last render of all levels again; see [`StereoMethod::show_again`].
+    ///
+    /// # Errors
+    /// As [`StereoMethod::render_level`].
+    pub fn show_levels_again(
+        &mut self,
+        levels: &EyeLevels,
+        to: &LevelTargets,
+        ahead: f32,
+    ) -> Result<bool, StereoError> {
+        let is_unfit = |pair: &EyePair| unfit(self.method, pair).is_some();
+        if self.is_comparing || self.unfit.is_some() || levels.pairs().any(is_unfit) {
+            return Ok(false);
+        }
+        match &mut self.kind {
+            Kind::Named(methods) => methods.show_again(levels, to, ahead),
+            // It is not made for half the rate.
+            Kind::Auto(_) => Ok(false),
+        }
+    }
+}
+
+/// A pair of eyes is one level.
+impl StereoMethod for SelectedMethod {
+    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
+        match &mut self.kind {
+            Kind::Named(methods) => methods.prepare(renderer, scene),
+            Kind::Auto(auto) => {
+                auto.methods.iter_mut().try_for_each(|methods| methods.prepare(renderer, scene))
+            }
+        }
+    }
+
+    fn render_level(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        level: &LevelEyes,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError> {
+        self.render_levels(renderer, scene, &(&level.eyes).into(), &to.into())
     }
 
     fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2], ahead: f32) -> Result<bool, StereoError> {
-        if self.is_comparing || self.unfit.is_some() || unfit(self.method, pair).is_some() {
-            return Ok(false);
-        }
-        self.chosen().show_again(pair, to, ahead)
+        self.show_levels_again(&pair.into(), &to.into(), ahead)
     }
 
     fn report(&self) -> MethodReport {
@@ -166,7 +200,7 @@ impl StereoMethod for SelectedMethod {
             return MethodReport { substituted: Some(Substituted::Eyes(*reason)), ..MethodReport::default() };
         }
         match &self.kind {
-            Kind::Named(method) => method.report(),
+            Kind::Named(methods) => methods.report(),
             Kind::Auto(auto) => auto.report(),
         }
     }
@@ -180,7 +214,7 @@ impl StereoMethod for SelectedMethod {
 /// by the clock.
 pub struct Auto {
     gl: Rc<Context>,
-    methods: [Box<dyn StereoMethod>; 2],
+    methods: [LevelMethods; 2],
     chooser: Chooser,
     /// How the last frame was rendered.
     shown: Option<Way>,
@@ -193,7 +227,7 @@ pub struct Auto {
 
 impl Auto {
     fn new(gl: &Rc<Context>, settings: &RenderSettings, options: &StereoOptions) -> Result<Auto, GlError> {
-        let [two_views, synthesis] = METHODS.map(|method| super::create(gl, method, settings, options));
+        let [two_views, synthesis] = METHODS.map(|method| LevelMethods::new(gl, method, settings, options));
         Ok(Auto {
             gl: gl.clone(),
             methods: [two_views?, synthesis?],
@@ -242,40 +276,36 @@ impl Auto {
     }
 }
 
-impl StereoMethod for Auto {
-    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
-        self.methods.iter_mut().try_for_each(|method| method.prepare(renderer, scene))
-    }
-
+impl Auto {
     fn report(&self) -> MethodReport {
         self.shown.map_or(MethodReport::default(), |way| self.methods[way.index()].report())
     }
 
-    fn render_to(
+    fn render(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
+        levels: &EyeLevels,
+        to: &LevelTargets,
     ) -> Result<(), StereoError> {
         let way = self.chooser.way();
         if std::mem::take(&mut self.is_new) {
             // Makes everything that the other method needs now, while the scene comes into view, rather than in its
             // first turn.
-            self.methods[way.other().index()].render_to(renderer, scene, pair, to)?;
+            self.methods[way.other().index()].render(renderer, scene, levels, to)?;
         }
         let is_clocked = self.chooser.is_measuring() && !self.gl.times_passes();
-        let targets = to.map(|eye| eye.color);
+        let finish = || to.pairs().for_each(|to| self.gl.finish_drawing(&to.map(|eye| eye.color)));
         let begin = is_clocked.then(|| {
-            self.gl.finish_drawing(&targets);
+            finish();
             Instant::now()
         });
-        let method = &mut self.methods[way.index()];
-        method.render_to(renderer, scene, pair, to)?;
+        let methods = &mut self.methods[way.index()];
+        methods.render(renderer, scene, levels, to)?;
         self.shown = Some(way);
-        self.rendered = method.report().substituted.is_none().then_some(way);
+        self.rendered = methods.report().substituted.is_none().then_some(way);
         self.clock_ms = begin.map(|begin| {
-            self.gl.finish_drawing(&targets);
+            finish();
             begin.elapsed().as_secs_f32() * 1e3
         });
         Ok(())

@@ -1,10 +1,10 @@
 //! The ground truth: renders both eyes, one after the other.
 
 use super::frame::Frame;
-use super::method::{EyeTarget, MethodReport, StereoError, StereoMethod};
+use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod};
 use super::motion::write_rendered;
 use crate::view::{DepthImage, GpuScene, Layout, Renderer, Targets, VectorPass};
-use yoro::eyes::{Eye, EyePair};
+use yoro::eyes::Eye;
 use yoro_gl::GlError;
 
 /// Two full renders.
@@ -32,7 +32,7 @@ impl Conventional {
             let (view, to) = (frame.pair.view(eye), frame.to(eye));
             let depth = frame.wants_depth(eye) || frame.to(eye).motion.is_some() || reads_depth(eye);
             let views = std::slice::from_ref(&view);
-            let is_complete = frame.renderer.draw_all(targets, frame.scene, views, depth, Some(to))?;
+            let is_complete = frame.renderer.draw_all(targets, &frame.scene, views, depth, Some(to))?;
             if !is_complete {
                 frame.renderer.develop(targets, &view, Eye::Left, [0, 0], &to.color, None);
             }
@@ -77,14 +77,14 @@ impl StereoMethod for Conventional {
         MethodReport { has_motion: self.has_motion, ..MethodReport::default() }
     }
 
-    fn render_to(
+    fn render_level(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
-        pair: &EyePair,
+        level: &LevelEyes,
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
-        Ok(self.render_eyes(&Frame::new(renderer, scene, pair, to)?, |_| false, |_| Ok(()))?)
+        Ok(self.render_eyes(&Frame::new(renderer, scene, level, to)?, |_| false, |_| Ok(()))?)
     }
 }

@@ -1,15 +1,16 @@
 //! A frame as stereo methods see it.
 
-use super::method::{EyeTarget, StereoError};
-use crate::view::{DepthImage, GpuScene, Renderer};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair};
+use super::method::{EyeTarget, LevelEyes, StereoError};
+use crate::view::{DepthImage, GpuScene, LitScene, Renderer};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, EyesError, GuardBand, SynthesisViews};
 
 /// A frame to render: its scene, its eyes and their targets.
 pub(super) struct Frame<'a> {
     pub(super) renderer: &'a Renderer,
-    pub(super) scene: &'a GpuScene,
+    pub(super) scene: LitScene<'a>,
     /// The eyes. Their depth is reversed, as everywhere in the renderer.
     pub(super) pair: EyePair,
+    level: LevelEyes,
     /// The convention of the depth that targets receive.
     convention: DepthConvention,
     to: &'a [EyeTarget<'a>; 2],
@@ -20,11 +21,24 @@ impl<'a> Frame<'a> {
     pub(super) fn new(
         renderer: &'a Renderer,
         scene: &'a GpuScene,
-        pair: &EyePair,
+        level: &LevelEyes,
         to: &'a [EyeTarget<'a>; 2],
     ) -> Result<Frame<'a>, StereoError> {
         renderer.check_scene(scene)?;
-        Ok(Frame { renderer, scene, pair: reversed(pair), convention: pair.depth.convention, to })
+        let convention = level.eyes.depth.convention;
+        let level = LevelEyes { eyes: reversed(&level.eyes), ..*level };
+        let scene = level.shown.map_or(scene.into(), |shown| LitScene::of_eyes(scene, &shown));
+        Ok(Frame { renderer, scene, pair: level.eyes, level, convention, to })
+    }
+
+    /// Returns the eyes as a level, with reversed depth.
+    pub(super) fn level(&self) -> &LevelEyes {
+        &self.level
+    }
+
+    /// Returns the view to render for both eyes, and how its pixels move.
+    pub(super) fn synthesis_views(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
+        self.level.synthesis_views(guard)
     }
 
     /// Returns a depth range with the convention of the depth that targets receive.

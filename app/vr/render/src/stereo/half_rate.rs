@@ -2,8 +2,8 @@
 
 use std::rc::Rc;
 
-use super::frame::{reversed, write_depth};
-use super::method::{EyeTarget, StereoError, StereoMethod};
+use super::frame::{Frame, reversed, write_depth};
+use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
 use super::options::{Pipeline, StereoOptions};
 use crate::view::{DepthImage, GpuScene, Layout, NearestDepth, Renderer, Step, Targets, VectorPass};
 use yoro::eyes::{
@@ -124,16 +124,16 @@ impl HalfRate {
     }
 
     /// Returns the views to render: what each eye, or both, see now, and what they will see after the head's motion.
-    fn source_views(&self, pair: &EyePair) -> Result<Vec<View>, EyesError> {
-        let nearest = match self.guard_band {
+    fn source_views(&self, frame: &Frame) -> Result<Vec<View>, EyesError> {
+        let nearest = frame.level().nearest.unwrap_or(match self.guard_band {
             GuardBand::Distance(metres) | GuardBand::Auto(metres) => metres,
             GuardBand::None | GuardBand::Pixels(_) => NEAREST,
-        };
+        });
         let guarded = |view: &View| Ok(self.motion.guarded(view, nearest)?.view);
         if self.each {
-            return Eye::BOTH.map(|eye| guarded(&pair.view(eye))).into_iter().collect();
+            return Eye::BOTH.map(|eye| guarded(&frame.pair.view(eye))).into_iter().collect();
         }
-        Ok(vec![guarded(&pair.synthesis_views(self.guard_band)?.source)?])
+        Ok(vec![guarded(&frame.synthesis_views(self.guard_band)?.source)?])
     }
 
     /// Synthesizes both eyes from the renders, after a part of the step between the last two of them.
@@ -199,20 +199,20 @@ impl StereoMethod for HalfRate {
         Ok(())
     }
 
-    fn render_to(
+    fn render_level(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
-        pair: &EyePair,
+        level: &LevelEyes,
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
-        renderer.check_scene(scene)?;
-        let views = self.source_views(&reversed(pair))?;
+        let frame = Frame::new(renderer, scene, level, to)?;
+        let (views, renderer) = (self.source_views(&frame)?, frame.renderer);
         for (render, view) in self.renders.iter_mut().zip(&views) {
             let former = render.view.take();
             let targets = &mut render.targets;
-            renderer.draw_all(targets, scene, std::slice::from_ref(view), true, None)?;
+            renderer.draw_all(targets, &frame.scene, std::slice::from_ref(view), true, None)?;
             if renderer.develops() {
                 let to = Destination::whole(targets.picture(view.size)?);
                 renderer.develop(targets, view, Eye::Left, [0, 0], &to, None);
@@ -222,7 +222,7 @@ impl StereoMethod for HalfRate {
             }
             render.view = Some(*view);
         }
-        self.show(pair, to, 0.0)
+        self.show(&level.eyes, to, 0.0)
     }
 
     fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2], ahead: f32) -> Result<bool, StereoError> {

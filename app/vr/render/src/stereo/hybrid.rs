@@ -7,7 +7,7 @@
 use glam::IVec2;
 
 use super::frame::Frame;
-use super::method::{EyeTarget, StereoError, StereoMethod};
+use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
 use crate::view::{GpuScene, Layout, Renderer, Targets};
 use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, Pose, View};
 
@@ -42,20 +42,20 @@ impl StereoMethod for Hybrid {
         Ok(())
     }
 
-    fn render_to(
+    fn render_level(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
-        pair: &EyePair,
+        level: &LevelEyes,
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
-        let frame = Frame::new(renderer, scene, pair, to)?;
+        let frame = Frame::new(renderer, scene, level, to)?;
         let Some([targets, far]) = &mut self.targets else { return Ok(()) };
         let renderer = frame.renderer;
         let fields = Fields::new(&frame.pair, self.threshold, scene)?;
         if let Some(slice) = fields.split.far {
-            renderer.draw_far(far, scene, &fields.view, slice)?;
+            renderer.draw_far(far, &frame.scene, &fields.view, slice)?;
         }
         for eye in Eye::BOTH {
             let (view, to) = (frame.pair.view(eye), frame.to(eye));
@@ -63,10 +63,10 @@ impl StereoMethod for Hybrid {
             let mut is_complete = false;
             if fields.split.far.is_some() {
                 let far = (&*far, &fields.view, fields.crops[eye.index()].as_uvec2().to_array());
-                renderer.draw_near(targets, scene, &view, fields.split.near, far, depth)?;
+                renderer.draw_near(targets, &frame.scene, &view, fields.split.near, far, depth)?;
             } else {
                 is_complete =
-                    renderer.draw_all(targets, scene, std::slice::from_ref(&view), depth, Some(to))?;
+                    renderer.draw_all(targets, &frame.scene, std::slice::from_ref(&view), depth, Some(to))?;
             }
             if !is_complete {
                 renderer.develop(targets, &view, Eye::Left, [0, 0], &to.color, None);

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use crate::view::{DepthCopy, GpuScene, Renderer};
-use yoro::eyes::{Eye, EyePair, EyesError, Ndc, View};
+use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, Ndc, SynthesisViews, View};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Image, RenderTarget, Texture};
 
 /// The reason why a stereo frame could not be rendered.
@@ -64,6 +64,11 @@ impl StereoFrame {
     /// Returns both images as targets, without depth.
     pub fn targets(&self) -> [EyeTarget<'static>; 2] {
         Eye::BOTH.map(|eye| EyeTarget::of(self.eye(eye)))
+    }
+
+    /// Returns both images as destinations, by [`Eye::index`].
+    pub fn colors(&self) -> [Destination; 2] {
+        self.targets().map(|target| target.color)
     }
 }
 
@@ -158,6 +163,36 @@ pub enum Substituted {
     Eyes(#[from] EyesError),
 }
 
+/// The eyes that a method renders: all that is shown, or a level of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelEyes {
+    /// The eyes with the frusta and the size of the images.
+    pub eyes: EyePair,
+    /// The eyes of which these are a level; `None` if they are all that is shown.
+    pub shown: Option<EyePair>,
+    /// For an inset: the distance in metres from which on its source must be complete.
+    pub nearest: Option<f32>,
+}
+
+impl From<&EyePair> for LevelEyes {
+    fn from(eyes: &EyePair) -> LevelEyes {
+        LevelEyes { eyes: *eyes, shown: None, nearest: None }
+    }
+}
+
+impl LevelEyes {
+    /// Returns the view to render for both eyes. An inset has the guard band that it needs in place of `guard`.
+    ///
+    /// # Errors
+    /// Those of [`EyePair::synthesis_views`].
+    pub fn synthesis_views(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
+        match self.nearest {
+            Some(nearest) => self.eyes.inset_views(nearest),
+            None => self.eyes.synthesis_views(guard),
+        }
+    }
+}
+
 /// A method with its own programs and targets.
 pub trait StereoMethod {
     /// Compiles what the method needs for the materials of a scene, so that the first frame of that scene need not.
@@ -171,17 +206,32 @@ pub trait StereoMethod {
         MethodReport::default()
     }
 
-    /// Renders both eyes of a frame into their targets, by [`Eye::index`].
+    /// Renders both eyes of a level into their targets, by [`Eye::index`]. A method whose targets fit one level is made for
+    /// each.
     ///
     /// # Errors
     /// [`StereoError`] if the method does not support the pair of eyes, or GL refuses.
+    fn render_level(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        level: &LevelEyes,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError>;
+
+    /// Renders both eyes of a frame into their targets, by [`Eye::index`].
+    ///
+    /// # Errors
+    /// As [`StereoMethod::render_level`].
     fn render_to(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
         to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError>;
+    ) -> Result<(), StereoError> {
+        self.render_level(renderer, scene, &pair.into(), to)
+    }
 
     /// Shows the last render again at the eyes' current poses. What moves goes on by `ahead` times its step between the last
     /// two renders, 0.5 for the frame between two. Returns false if the method cannot do that, or if the last render does

@@ -7,6 +7,7 @@ mod frame;
 mod guard_band;
 mod half_rate;
 mod hybrid;
+mod levels;
 mod method;
 mod mono;
 mod motion;
@@ -36,9 +37,10 @@ pub use auto::{Auto, SelectedMethod, unfit};
 use conventional::Conventional;
 use half_rate::HalfRate;
 use hybrid::Hybrid;
+pub use levels::{EyeLevels, LevelFrame, LevelTargets};
 pub use method::{
-    DepthTarget, EyeTarget, GuardBandUse, MethodReport, MotionTarget, StereoError, StereoFrame, StereoMethod,
-    Substituted,
+    DepthTarget, EyeTarget, GuardBandUse, LevelEyes, MethodReport, MotionTarget, StereoError, StereoFrame,
+    StereoMethod, Substituted,
 };
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};

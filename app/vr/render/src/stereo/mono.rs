@@ -1,7 +1,7 @@
 //! The dominant eye's view shown to both eyes: the lower bound of cost and quality.
 
 use super::frame::Frame;
-use super::method::{EyeTarget, StereoError, StereoMethod};
+use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
 use crate::view::{GpuScene, Layout, Renderer, Targets};
 use yoro::eyes::{Eye, EyePair, GuardBand, View};
 
@@ -20,15 +20,15 @@ impl StereoMethod for Mono {
         Ok(())
     }
 
-    fn render_to(
+    fn render_level(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
-        pair: &EyePair,
+        level: &LevelEyes,
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
-        let frame = Frame::new(renderer, scene, pair, to)?;
+        let frame = Frame::new(renderer, scene, level, to)?;
         let Some(targets) = &mut self.targets else { return Ok(()) };
         let pair = &frame.pair;
         let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..*pair };
@@ -36,7 +36,7 @@ impl StereoMethod for Mono {
         let wants_depth = Eye::BOTH.iter().any(|eye| frame.wants_depth(*eye));
         let source = &views.source;
         let renderer = frame.renderer;
-        renderer.draw_all(targets, scene, std::slice::from_ref(source), wants_depth, None)?;
+        renderer.draw_all(targets, &frame.scene, std::slice::from_ref(source), wants_depth, None)?;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let (origin, other_origin) = (views.dominant_crop, origin_in(source, &views.target));
         renderer.develop(targets, source, Eye::Left, origin, &frame.to(dominant).color, None);

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::frame::Frame;
-use super::method::{MotionTarget, StereoError};
+use super::method::{LevelEyes, MotionTarget, StereoError};
 use crate::view::{DepthImage, Step, VectorPass};
 use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, VectorSpace, VectorsOf, View};
 use yoro::opengl::{Motion, Options, Outputs, Source};
@@ -49,7 +49,7 @@ pub(super) fn write_rendered(
 ) -> Result<bool, GlError> {
     let Some(motion) = MotionFrame::new(frame) else { return Ok(false) };
     let step = motion.step(eye, motion.now.view(eye));
-    pass.draw_moving(frame.scene, &step)?;
+    pass.draw_moving(&frame.scene, &step)?;
     pass.write((depth, &frame.pair.view(eye)), &step, [0, 0], &motion.targets[eye.index()].to)?;
     Ok(true)
 }
@@ -89,7 +89,8 @@ impl SynthesizedMotion {
             }
             other => other,
         };
-        let views = [motion.now, motion.then].map(|pair| pair.synthesis_views(guard_band));
+        let views = [motion.now, motion.then]
+            .map(|eyes| LevelEyes { eyes, ..*frame.level() }.synthesis_views(guard_band));
         let [Ok(now), Ok(then)] = views else { return Ok(false) };
         let ndc = motion.targets[dominant.other().index()].ndc;
         let warp = match now.motion(&then, VectorSpace { ndc, of: VectorsOf::Eye }) {
@@ -98,7 +99,7 @@ impl SynthesizedMotion {
         };
         let step = motion.step(dominant, now.source);
         self.source.resize(now.source.size)?;
-        self.pass.draw_moving(frame.scene, &step)?;
+        self.pass.draw_moving(&frame.scene, &step)?;
         let images = (depth, rendered);
         self.pass.write(images, &step, [0, 0], &Destination::whole(&self.source))?;
         let own = &motion.targets[dominant.index()].to;

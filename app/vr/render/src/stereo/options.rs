@@ -54,6 +54,9 @@ pub struct StereoOptions {
     /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
     /// `f_px * IPD / split_disparity` metres.
     pub split_disparity: f32,
+    /// For frames that may have an inset ([`super::EyeLevels`]): the distance in metres from which on the synthesized eye's
+    /// is complete. `None` if no frame has one.
+    pub inset: Option<f32>,
 }
 
 impl Default for StereoOptions {
@@ -65,6 +68,7 @@ impl Default for StereoOptions {
             policy: Some(NearFieldPolicy::default()),
             half_rate: false,
             split_disparity: 1.0,
+            inset: None,
         }
     }
 }

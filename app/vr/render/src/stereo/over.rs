@@ -162,7 +162,7 @@ impl Over {
         if over.is_any() {
             let place = &self.place;
             self.gl.bind_framebuffer(place.framebuffer, place.origin, place.size);
-            frame.renderer.draw_over(frame.scene, &view, over.near, samples);
+            frame.renderer.draw_over(&frame.scene, &view, over.near, samples);
         }
         match (self.way, &self.multisample, &self.tile, &self.image) {
             (Way::Samples, Some(samples), ..) => self.gl.pass("resolve", || {

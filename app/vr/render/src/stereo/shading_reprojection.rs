@@ -6,10 +6,10 @@
 //! second eye's geometry and the maps of its materials.
 
 use super::frame::Frame;
-use super::method::{EyeTarget, StereoError, StereoMethod};
+use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
 use super::over::{Over, OverlaySurfaces};
 use crate::view::{GpuScene, Layout, Renderer, Reprojection, Targets};
-use yoro::eyes::{DisparityLaw, Eye, EyePair, GuardBand};
+use yoro::eyes::{DisparityLaw, Eye, GuardBand};
 
 /// Draws geometry twice, and shades once, and again where the dominant eye does not see a surface. Colours are taken
 /// before bloom, which runs for each eye.
@@ -36,15 +36,15 @@ impl StereoMethod for ShadingReprojection {
         Ok(())
     }
 
-    fn render_to(
+    fn render_level(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
-        pair: &EyePair,
+        level: &LevelEyes,
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
-        let frame = Frame::new(renderer, scene, pair, to)?;
+        let frame = Frame::new(renderer, scene, level, to)?;
         let Some(Made { dominant, second, over }) = &mut self.made else { return Ok(()) };
         let (pair, renderer) = (&frame.pair, frame.renderer);
         // The law for the dominant eye's own image instead of one with both frusta: pixels outside of it are shaded.
@@ -55,7 +55,7 @@ impl StereoMethod for ShadingReprojection {
         let disparity_at_1_m = (pair.focal_length_pixels() * pair.ipd()).abs();
         let [eye, other] = [pair.dominant, pair.dominant.other()];
         let (view, other_view) = (pair.view(eye), pair.view(other));
-        renderer.draw_dominant(dominant, scene, &view)?;
+        renderer.draw_dominant(dominant, &frame.scene, &view)?;
         renderer.ink_beside(dominant, &view)?;
         renderer.shine(dominant, &view, Eye::Left);
         let from = Reprojection {
@@ -66,7 +66,7 @@ impl StereoMethod for ShadingReprojection {
             half_pixel: 0.5 / disparity_at_1_m.max(1e-6),
         };
         let wants_depth = frame.wants_depth(other);
-        renderer.draw_reprojected(second, scene, &other_view, &from, wants_depth)?;
+        renderer.draw_reprojected(second, &frame.scene, &other_view, &from, wants_depth)?;
         renderer.develop(second, &other_view, Eye::Left, [0, 0], &frame.to(other).color, None);
         if wants_depth {
             frame.write_depth(other, &second.depth(view.size, Eye::Left, [0, 0]));

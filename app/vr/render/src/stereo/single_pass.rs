@@ -2,9 +2,9 @@
 //! for each eye.
 
 use super::frame::Frame;
-use super::method::{EyeTarget, StereoError, StereoMethod};
+use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
 use crate::view::{GpuScene, Layout, Renderer, Seam, Targets};
-use yoro::eyes::{Eye, EyePair};
+use yoro::eyes::Eye;
 use yoro_gl::Context;
 
 /// Culls once, and issues one draw call per visible range of triangles, for both eyes.
@@ -39,19 +39,19 @@ impl StereoMethod for SinglePass {
         Ok(())
     }
 
-    fn render_to(
+    fn render_level(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
-        pair: &EyePair,
+        level: &LevelEyes,
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
-        let frame = Frame::new(renderer, scene, pair, to)?;
+        let frame = Frame::new(renderer, scene, level, to)?;
         let Some(targets) = &mut self.targets else { return Ok(()) };
         let views = Eye::BOTH.map(|eye| frame.pair.view(eye));
         let wants_depth = Eye::BOTH.iter().any(|eye| frame.wants_depth(*eye));
-        frame.renderer.draw_all(targets, scene, &views, wants_depth, None)?;
+        frame.renderer.draw_all(targets, &frame.scene, &views, wants_depth, None)?;
         for eye in Eye::BOTH {
             let view = &views[eye.index()];
             frame.renderer.ink_layer(targets, view, eye)?;

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::conventional::Conventional;
 use super::frame::Frame;
 use super::guard_band::AutoGuardBand;
-use super::method::{EyeTarget, MethodReport, StereoError, StereoMethod, Substituted};
+use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod, Substituted};
 use super::motion::SynthesizedMotion;
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::NearFraction;
@@ -161,7 +161,7 @@ impl Synthesized {
         let pair = &frame.pair;
         let renderer = frame.renderer;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
-        let views = pair.synthesis_views(self.options.guard_band)?;
+        let views = frame.synthesis_views(self.options.guard_band)?;
         self.has_motion = false;
         if self.render_both(frame)? {
             return Ok(());
@@ -172,11 +172,11 @@ impl Synthesized {
         let surfaces = OverlaySurfaces { near, transparent };
         let request = DrawRequest {
             selection: self.selection(pair),
-            columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(pair, &views, frame.scene)),
+            columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(pair, &views, &frame.scene)),
         };
         let develops_first = self.develops_first();
         let Some(Made { targets, over, synthesizers, guess }) = &mut self.made else { return Ok(()) };
-        renderer.draw_source(targets, frame.scene, &views.source, &request)?;
+        renderer.draw_source(targets, &frame.scene, &views.source, &request)?;
         let is_developed = develops_first && renderer.develops();
         if is_developed {
             let to = Destination::whole(targets.picture(views.source.size)?);
@@ -262,14 +262,14 @@ impl StereoMethod for Synthesized {
         }
     }
 
-    fn render_to(
+    fn render_level(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
-        pair: &EyePair,
+        level: &LevelEyes,
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
-        self.render_frame(&Frame::new(renderer, scene, pair, to)?)
+        self.render_frame(&Frame::new(renderer, scene, level, to)?)
     }
 }

@@ -9,7 +9,7 @@ use crate::fixture::quad;
 use crate::view::{DepthCopy, GpuScene, Renderer, Seam};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
 use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
-use yoro_assets::{Alpha, Material, Model, Motion, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_assets::{Alpha, Material, Model, Motion, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Format, Profiling, RenderTarget};
 
@@ -95,6 +95,27 @@ impl Rig {
         Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() }
     }
 
+    /// The same scene in a row of lights, of which the nearer ones are weaker.
+    pub(super) fn with_lights(gl: &Rc<Context>, settings: &RenderSettings) -> Rig {
+        let mut scene = scene();
+        scene.lights = (0..12)
+            .map(|i| PointLight {
+                position: Vec3::new(i as f32 * 0.6 - 3.3, 0.2, -3.0),
+                color: Vec3::splat(0.5 + (i as f32 - 5.5).abs()),
+                range: 1.0,
+            })
+            .collect();
+        Rig::of(gl, settings, scene)
+    }
+
+    pub(super) fn gl(&self) -> Rc<Context> {
+        self.renderer.gl.clone()
+    }
+
+    pub(super) fn parts(&mut self) -> (&mut Renderer, &GpuScene) {
+        (&mut self.renderer, &self.scene)
+    }
+
     pub(super) fn render(&mut self, method: &mut dyn StereoMethod, pair: &EyePair) -> [Vec<u8>; 2] {
         self.render_with(method, pair, |_, to| to)
     }
@@ -119,7 +140,7 @@ impl Rig {
 }
 
 /// Returns the share of pixels whose channels all differ by at most 1.
-fn equal_share(a: &[u8], b: &[u8]) -> f64 {
+pub(super) fn equal_share(a: &[u8], b: &[u8]) -> f64 {
     assert_eq!(a.len(), b.len());
     let equal =
         a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a.iter().zip(*b).all(|(a, b)| a.abs_diff(*b) <= 1));

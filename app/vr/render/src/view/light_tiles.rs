@@ -114,7 +114,7 @@ mod tests {
             })
             .collect();
         let culler = Culler::of_view(&view);
-        let lights = Lights::choose(&scene, pose.position, &[culler], 24);
+        let lights = Lights::choose(&scene, pose.position, pose.position, &[culler], 24);
         let tiles = LightTiles::new(&lights, Layout::Single, &[view]);
         let mask = |x: f32, y: f32| {
             let at =

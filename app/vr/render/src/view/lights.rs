@@ -17,8 +17,15 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// Chooses the `limit` lights that are strongest at the eye, of those that reach into any of the views.
-    pub fn choose(lights: &[PointLight], eye: Vec3, cullers: &[Culler], limit: usize) -> Lights {
+    /// Chooses the `limit` lights that are strongest at the eye, of those that reach into any of the views. Positions are
+    /// relative to `origin`.
+    pub fn choose(
+        lights: &[PointLight],
+        eye: Vec3,
+        origin: Vec3,
+        cullers: &[Culler],
+        limit: usize,
+    ) -> Lights {
         let limit = limit.min(MAX_POINT_LIGHTS);
         let mut scores = [(0.0, 0); MAX_POINT_LIGHTS];
         let mut count = 0;
@@ -42,18 +49,18 @@ impl Lights {
         }
         let (mut positions, mut colors) = ([Vec4::ZERO; MAX_POINT_LIGHTS], [Vec4::ZERO; MAX_POINT_LIGHTS]);
         for (k, &(_, i)) in scores[..count].iter().enumerate() {
-            positions[k] = (lights[i].position - eye).extend(1.0 / lights[i].range.max(1e-3));
+            positions[k] = (lights[i].position - origin).extend(1.0 / lights[i].range.max(1e-3));
             colors[k] = lights[i].color.extend(0.0);
         }
         Lights { positions, colors, count }
     }
 
-    /// Chooses the lights of one view or of both eyes, with positions relative to the first view.
-    pub fn of(scene: &GpuScene, views: &[View], limit: usize) -> Lights {
+    /// Chooses the lights of one view or of both eyes, with positions relative to `origin`.
+    pub fn of(scene: &GpuScene, views: &[View], origin: Vec3, limit: usize) -> Lights {
         // One culler for each eye. A single view's culler is repeated, and the copy is not used.
         let cullers: [Culler; 2] =
             std::array::from_fn(|i| Culler::of_view(views.get(i).unwrap_or(&views[0])));
-        Lights::choose(&scene.lights, views[0].pose.position, &cullers[..views.len()], limit)
+        Lights::choose(&scene.lights, views[0].pose.position, origin, &cullers[..views.len()], limit)
     }
 
     /// Returns centres relative to the eye, along the world's axes, and ranges in metres.
@@ -97,12 +104,14 @@ mod tests {
         // One light behind the eye, one far and weak, then forty of increasing strength.
         let mut lights = vec![light(20.0, 1000.0), light(-100.0, 1.0)];
         lights.extend((0..40).map(|i| light(-5.0, 1.0 + i as f32)));
-        let chosen = Lights::choose(&lights, Vec3::ZERO, &[culler], 16);
+        let choose =
+            |lights: &[PointLight], limit| Lights::choose(lights, Vec3::ZERO, Vec3::ZERO, &[culler], limit);
+        let chosen = choose(&lights, 16);
         assert_eq!(chosen.count, 16);
         let strengths: Vec<_> = chosen.colors[..16].iter().map(|c| c.x).collect();
         assert_eq!(strengths, (0..16).map(|i| 40.0 - i as f32).collect::<Vec<_>>());
-        assert_eq!(Lights::choose(&lights, Vec3::ZERO, &[culler], 100).count, MAX_POINT_LIGHTS);
-        assert_eq!(Lights::choose(&lights, Vec3::ZERO, &[culler], 0).count, 0);
-        assert_eq!(Lights::choose(&lights[..2], Vec3::ZERO, &[culler], 8).count, 1);
+        assert_eq!(choose(&lights, 100).count, MAX_POINT_LIGHTS);
+        assert_eq!(choose(&lights, 0).count, 0);
+        assert_eq!(choose(&lights[..2], 8).count, 1);
     }
 }

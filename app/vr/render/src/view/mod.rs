@@ -10,6 +10,7 @@ mod geometry;
 mod layout;
 mod light_tiles;
 mod lights;
+mod lit;
 mod moving;
 #[cfg(test)]
 mod moving_tests;
@@ -36,6 +37,7 @@ pub use declared::{PASSES, Part as TilePart, Pass};
 pub(crate) use depth::DepthProgram;
 pub use depth::{DepthCopy, DepthImage, NearestDepth};
 pub(crate) use layout::{Layout, Seam};
+pub(crate) use lit::LitScene;
 pub(crate) use passes::Reprojection;
 pub use read_back::{DepthReader, ViewReader};
 pub use renderer::{RenderedView, Renderer, ViewTargets};

@@ -9,6 +9,7 @@ use super::geometry::{Part, Variant};
 use super::layout::Layout;
 use super::light_tiles::LightTiles;
 use super::lights::Lights;
+use super::lit::LitScene;
 use super::renderer::{Develop, Renderer, Resolve, line_width};
 use super::request::Rectangle;
 use super::scene::{FREE_UNIT, GpuScene};
@@ -58,10 +59,10 @@ pub(crate) struct Reprojection<'a> {
 
 impl Renderer {
     /// Returns the light of the views in an image of this layout, for positions relative to the first view.
-    fn illuminate<'a>(&'a self, layout: Layout, scene: &'a GpuScene, views: &[View]) -> Illumination<'a> {
+    fn illuminate<'a>(&'a self, layout: Layout, scene: &LitScene<'a>, views: &[View]) -> Illumination<'a> {
         let lights = self.lights(scene, views);
         Illumination {
-            scene,
+            scene: scene.scene(),
             shadow: self.shadow.as_ref(),
             tiles: LightTiles::new(&lights, layout, views),
             lights,
@@ -76,7 +77,7 @@ impl Renderer {
     }
 
     /// Clears the targets, and draws a part of the scene and the sky behind it.
-    pub(super) fn draw_on_sky(&self, targets: &mut Targets, scene: &GpuScene, views: &[View], part: &Part) {
+    pub(super) fn draw_on_sky(&self, targets: &mut Targets, scene: &LitScene, views: &[View], part: &Part) {
         self.draw_on_sky_as(targets, scene, views, part, None);
     }
 
@@ -84,7 +85,7 @@ impl Renderer {
     fn draw_on_sky_as(
         &self,
         targets: &mut Targets,
-        scene: &GpuScene,
+        scene: &LitScene,
         views: &[View],
         part: &Part,
         from: Option<&Reprojection>,
@@ -148,7 +149,7 @@ impl Renderer {
     }
 
     /// Draws the transparent surfaces over what is in the targets.
-    pub(super) fn draw_transparent(&self, targets: &Targets, scene: &GpuScene, views: &[View]) {
+    pub(super) fn draw_transparent(&self, targets: &Targets, scene: &LitScene, views: &[View]) {
         if scene.has_transparent() {
             let light = self.illuminate(targets.layout(), scene, views);
             self.transparent.run(Renderer::variant(targets), scene, views, |program| light.set(program));
@@ -157,7 +158,7 @@ impl Renderer {
 
     /// Draws near objects and transparent surfaces over the bound framebuffer, which holds an eye and its depth from
     /// pixel [0, 0] on, and has this many samples in each pixel.
-    pub(crate) fn draw_over(&self, scene: &GpuScene, view: &View, near: Option<Selection>, samples: u32) {
+    pub(crate) fn draw_over(&self, scene: &LitScene, view: &View, near: Option<Selection>, samples: u32) {
         let variant = Variant::plain(samples);
         let views = std::slice::from_ref(view);
         let light = self.illuminate(Layout::Single, scene, views);
@@ -423,7 +424,7 @@ impl Renderer {
     pub(crate) fn draw_far(
         &self,
         targets: &mut Targets,
-        scene: &GpuScene,
+        scene: &LitScene,
         view: &View,
         slice: [f32; 2],
     ) -> Result<(), GlError> {
@@ -437,7 +438,7 @@ impl Renderer {
     pub(crate) fn draw_near(
         &self,
         targets: &mut Targets,
-        scene: &GpuScene,
+        scene: &LitScene,
         view: &View,
         slice: Option<[f32; 2]>,
         (far, far_view, crop): (&Targets, &View, [u32; 2]),
@@ -464,7 +465,7 @@ impl Renderer {
     pub(crate) fn draw_dominant(
         &self,
         targets: &mut Targets,
-        scene: &GpuScene,
+        scene: &LitScene,
         view: &View,
     ) -> Result<(), GlError> {
         targets.fit(view, self.needs(true), None)?;
@@ -477,7 +478,7 @@ impl Renderer {
     pub(crate) fn draw_reprojected(
         &self,
         targets: &mut Targets,
-        scene: &GpuScene,
+        scene: &LitScene,
         view: &View,
         from: &Reprojection,
         depth: bool,

@@ -14,6 +14,7 @@ use super::depth::{DepthImage, NearestDepth};
 use super::geometry::{GeometryPass, Part, Variant};
 use super::layout::Layout;
 use super::lights::Lights;
+use super::lit::LitScene;
 use super::request::DrawRequest;
 use super::scene::GpuScene;
 use super::settings::{MAX_POINT_LIGHTS, RenderSettings};
@@ -81,9 +82,11 @@ pub struct RenderedView<'a> {
     pub depth: DepthImage<'a>,
 }
 
-/// Returns the width of ink outlines in pixels.
+/// Returns the width of ink outlines in pixels: a 900th of a view that is 60 degrees high, and the same angle in any other,
+/// so that all levels of an eye have the same lines.
 pub(super) fn line_width(view: &View) -> i32 {
-    (view.size[1] as f32 / 900.0).round().max(1.0) as i32
+    let of_60_degrees = view.size[1] as f32 / view.frustum.height() * 2.0 * 30f32.to_radians().tan();
+    (of_60_degrees / 900.0).round().max(1.0) as i32
 }
 
 /// Returns the defines of `include/shade.glsl` for a scene.
@@ -163,7 +166,7 @@ impl Renderer {
         selection: Selection,
     ) -> Result<RenderedView<'a>, GlError> {
         let targets = self.fitting(targets, scene)?;
-        self.draw_source(targets, scene, view, &DrawRequest { selection, columns: None })?;
+        self.draw_source(targets, &scene.into(), view, &DrawRequest { selection, columns: None })?;
         self.complete(targets, view)
     }
 
@@ -178,7 +181,7 @@ impl Renderer {
         view: &View,
     ) -> Result<RenderedView<'a>, GlError> {
         let targets = self.fitting(targets, scene)?;
-        self.draw_all(targets, scene, std::slice::from_ref(view), true, None)?;
+        self.draw_all(targets, &scene.into(), std::slice::from_ref(view), true, None)?;
         self.complete(targets, view)
     }
 
@@ -355,8 +358,8 @@ impl Renderer {
     }
 
     /// Returns the point lights of one view or of both eyes, with positions relative to the first view.
-    pub(super) fn lights(&self, scene: &GpuScene, views: &[View]) -> Lights {
-        Lights::of(scene, views, self.settings.point_lights)
+    pub(super) fn lights(&self, scene: &LitScene, views: &[View]) -> Lights {
+        Lights::of(scene, scene.lit(views), views[0].pose.position, self.settings.point_lights)
     }
 }
 
@@ -367,7 +370,7 @@ impl Renderer {
     pub(crate) fn draw_source(
         &self,
         targets: &mut Targets,
-        scene: &GpuScene,
+        scene: &LitScene,
         view: &View,
         request: &DrawRequest,
     ) -> Result<(), GlError> {
@@ -391,7 +394,7 @@ impl Renderer {
     pub(crate) fn draw_all(
         &self,
         targets: &mut Targets,
-        scene: &GpuScene,
+        scene: &LitScene,
         views: &[View],
         depth: bool,
         to: Option<&EyeTarget>,

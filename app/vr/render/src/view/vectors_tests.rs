@@ -37,7 +37,7 @@ fn vectors_are_those_of_what_has_moved() {
         }
         let mut targets = rig.renderer.targets(Layout::Single).unwrap();
         let views = std::slice::from_ref(&rendered);
-        rig.renderer.draw_all(&mut targets, &rig.scene, views, true, None).unwrap();
+        rig.renderer.draw_all(&mut targets, &(&rig.scene).into(), views, true, None).unwrap();
         let f = rendered.frustum;
         let smaller = View {
             size: [70, 60],

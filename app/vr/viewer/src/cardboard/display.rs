@@ -11,13 +11,13 @@ use crate::error::ViewerError;
 use crate::event::{Action, Event};
 use crate::frame::{FrameReport, FrameTiming};
 use crate::viewer::Viewer;
-use yoro::eyes::{DepthRange, Eye, EyePair, Pose};
+use yoro::eyes::{DepthRange, Eye, EyePair, FoveationLevel, Pose};
 use yoro_gl::{Context, Destination, GlError};
 use yoro_lenses::LensPass;
 use yoro_lenses::ViewerParams;
 use yoro_lenses::{HeadTracker, MotionSample, neck_offset};
 use yoro_lenses::{Optics, Screen, flat_hit};
-use yoro_render::stereo::StereoFrame;
+use yoro_render::stereo::{LevelFrame, StereoFrame};
 use yoro_settings::{Ipd, Settings, Timewarp};
 
 /// Pixels per inch assumed for a screen that does not report any.
@@ -36,6 +36,8 @@ pub struct HeldHead {
 struct Attached {
     gl: Rc<Context>,
     frame: StereoFrame,
+    /// The images in place of `frame` while the settings ask for levels.
+    levels: Option<LevelFrame>,
     lens: LensPass,
     /// A fence after the last frame that was presented.
     presented: Fence,
@@ -43,6 +45,8 @@ struct Attached {
     timewarp: Option<PositionalTimewarp>,
     /// The head's rotation to the world, and the eyes, of the last frame that was rendered.
     rendered: Option<(Quat, EyePair)>,
+    /// True if that frame is in levels.
+    is_in_levels: bool,
 }
 
 /// The application on the screen of a phone, behind the lenses of a Cardboard-compatible viewer.
@@ -98,14 +102,15 @@ impl Cardboard {
     /// # Errors
     /// [`ViewerError::Gl`].
     pub fn attach(&mut self, gl: Rc<Context>) -> Result<(), ViewerError> {
-        let chromatic = self.viewer.settings().chromatic;
         self.viewer.attach(gl.clone())?;
         self.attached = Some(Attached {
-            frame: StereoFrame::new(&gl, self.eye_size())?,
+            frame: StereoFrame::new(&gl, [1, 1])?,
+            levels: self.level_frame(&gl)?,
             timewarp: self.positional_timewarp(&gl)?,
-            lens: LensPass::new(&gl, &self.optics, chromatic)?,
+            lens: self.lens_pass(&gl)?,
             presented: Fence::new(&gl),
             rendered: None,
+            is_in_levels: false,
             gl,
         });
         Ok(())
@@ -145,12 +150,28 @@ impl Cardboard {
         is_wanted.then(|| PositionalTimewarp::new(gl, self.eye_size())).transpose()
     }
 
+    /// True if frames are in levels. Positional timewarp moves whole eyes.
+    fn has_levels(&self) -> bool {
+        let settings = self.viewer.settings();
+        settings.foveation.unwrap_or_default() != FoveationLevel::Off
+            && settings.timewarp != Timewarp::Position
+    }
+
+    fn level_frame(&self, gl: &Rc<Context>) -> Result<Option<LevelFrame>, GlError> {
+        self.has_levels().then(|| LevelFrame::new(gl, false)).transpose()
+    }
+
+    fn lens_pass(&self, gl: &Rc<Context>) -> Result<LensPass, GlError> {
+        LensPass::new(gl, &self.optics, self.viewer.settings().chromatic, self.has_levels())
+    }
+
     /// Recomputes the lenses.
     fn make_optics(&mut self) -> Result<(), ViewerError> {
         self.optics = Optics::new(&self.params, metres(self.viewer.settings(), &self.screen));
+        let Some(gl) = self.attached.as_ref().map(|attached| attached.gl.clone()) else { return Ok(()) };
+        let lens = self.lens_pass(&gl)?;
         if let Some(attached) = &mut self.attached {
-            let chromatic = self.viewer.settings().chromatic;
-            attached.lens = LensPass::new(&attached.gl, &self.optics, chromatic)?;
+            attached.lens = lens;
         }
         Ok(())
     }
@@ -177,14 +198,22 @@ impl Cardboard {
             Some(ViewerParams::find_in(&settings.viewer, folders)?)
         };
         let timewarp_differs = settings.timewarp != before.timewarp;
+        let had_levels = self.has_levels();
         change(&mut self.viewer, settings)?;
+        let levels_differ = self.has_levels() != had_levels;
+        if levels_differ && let Some(gl) = self.attached.as_ref().map(|attached| attached.gl.clone()) {
+            let levels = self.level_frame(&gl)?;
+            if let Some(attached) = &mut self.attached {
+                (attached.levels, attached.rendered) = (levels, None);
+            }
+        }
         if timewarp_differs && let Some(gl) = self.attached.as_ref().map(|attached| attached.gl.clone()) {
             let timewarp = self.positional_timewarp(&gl)?;
             if let Some(attached) = &mut self.attached {
                 (attached.timewarp, attached.rendered) = (timewarp, None);
             }
         }
-        let lenses_differ = params.is_some() || optics_differ;
+        let lenses_differ = params.is_some() || optics_differ || levels_differ;
         if let Some(params) = params {
             self.params = params;
             self.viewer.set_native_ipd(Ipd::nearest(self.params.inter_lens));
@@ -309,15 +338,25 @@ impl Cardboard {
         self.follow(action)?;
         let pair = self.eyes(head);
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
-        attached.frame.resize(pair.size)?;
-        match &mut attached.timewarp {
-            Some(timewarp) => {
+        let levels = attached.levels.as_mut().zip(self.viewer.levels(&pair));
+        attached.is_in_levels = levels.is_some();
+        match (levels, &mut attached.timewarp) {
+            (Some((frame, levels)), _) => {
+                let to = frame.fit(&levels)?;
+                self.viewer.render_levels(&(&levels).into(), &to)?;
+                for (frame, eyes) in frame.levels() {
+                    draw_panels(&mut self.viewer, (&pair, eyes), frame)?;
+                }
+            }
+            (None, Some(timewarp)) => {
+                attached.frame.resize(pair.size)?;
                 timewarp.resize(pair.size)?;
                 self.viewer.render_eyes(&pair, &timewarp.targets(&attached.frame))?;
             }
-            None => {
+            (None, None) => {
+                attached.frame.resize(pair.size)?;
                 self.viewer.render_eyes(&pair, &attached.frame.targets())?;
-                draw_panels(&mut self.viewer, &pair, &attached.frame)?;
+                draw_panels(&mut self.viewer, (&pair, &pair), &attached.frame)?;
             }
         }
         attached.rendered = Some((head, pair));
@@ -364,10 +403,14 @@ impl Cardboard {
                 if let Some(moved) = timewarp.run(frame, pair, &now)? {
                     (frame, shown, turn) = (moved, &now, Quat::IDENTITY);
                 }
-                draw_panels(&mut self.viewer, shown, frame)?;
+                draw_panels(&mut self.viewer, (shown, shown), frame)?;
             }
         }
-        attached.lens.run(frame.images(), turn, window);
+        let levels = attached.levels.as_ref().filter(|_| attached.is_in_levels);
+        match levels.and_then(|levels| levels.eye(Eye::Left).zip(levels.eye(Eye::Right))) {
+            Some((left, right)) => attached.lens.run_levels(&[left, right], turn, window),
+            None => attached.lens.run(frame.images(), turn, window),
+        }
         self.viewer.draw_corners(corner, window);
         attached.presented.set();
         self.viewer.end(timing)
@@ -411,11 +454,15 @@ impl Cardboard {
     }
 }
 
-/// Draws the HUD and the menu into both eyes.
-fn draw_panels(viewer: &mut Viewer, pair: &EyePair, frame: &StereoFrame) -> Result<(), ViewerError> {
-    let colors = frame.targets().map(|target| target.color);
+/// Draws the HUD and the menu into both eyes, or into a level of them: `eyes` are the whole eyes and those of the frame.
+fn draw_panels(
+    viewer: &mut Viewer,
+    (shown, pair): (&EyePair, &EyePair),
+    frame: &StereoFrame,
+) -> Result<(), ViewerError> {
+    let colors = frame.colors();
     if let Some(panel) = viewer.hud()? {
-        panel.draw_into_eyes(pair, &colors);
+        panel.draw_into_eyes(shown, pair, &colors);
     }
     viewer.draw_menu(pair, &colors);
     Ok(())

@@ -5,10 +5,11 @@ use crate::adaptive::Load;
 use crate::caption::Status;
 use crate::error::ViewerError;
 use crate::frame::{FrameReport, FrameTiming, SceneState};
+use crate::options::stereo_options;
 use yoro::choice::Cost;
-use yoro::eyes::EyePair;
+use yoro::eyes::{EyePair, Gaze, Levels};
 use yoro_lenses::{Content, Panel, Placement};
-use yoro_render::stereo::{DepthTarget, EyeTarget};
+use yoro_render::stereo::{DepthTarget, EyeLevels, EyeTarget, LevelTargets};
 use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
 
 /// The sizes of the eyes' images are multiples of this many pixels, so that small changes need no new targets.
@@ -35,10 +36,29 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
     pub fn render_eyes(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), ViewerError> {
+        self.render_levels(&pair.into(), &to.into())
+    }
+
+    /// Returns the levels in which the settings' foveation renders a pair of eyes; `None` if it is rendered as a whole: by
+    /// [`FoveationLevel::Off`](yoro::eyes::FoveationLevel::Off), and where neither eye can be synthesized from the other.
+    pub fn levels(&self, pair: &EyePair) -> Option<Levels> {
+        let foveation = self.settings.foveation.unwrap_or_default().foveation()?;
+        let guard = stereo_options(&self.settings, self.method.pipeline()).guard_band;
+        pair.levels(Some(&foveation), Gaze::Axes(pair.axes()), guard).ok().filter(|l| l.inset.is_some())
+    }
+
+    /// Renders both eyes of each level of a frame into their targets, like [`Viewer::render_eyes`]. Nobody composes them: a
+    /// display does so in its last pass ([`LevelFrame::eye`](yoro_render::stereo::LevelFrame::eye)) or in one of its own
+    /// ([`LevelFrame::compose`](yoro_render::stereo::LevelFrame::compose)), or its runtime does.
+    ///
+    /// # Errors
+    /// Those of [`Viewer::render_eyes`].
+    pub fn render_levels(&mut self, levels: &EyeLevels, to: &LevelTargets) -> Result<(), ViewerError> {
+        let pair = &levels.shown;
         self.stats.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
         let Some(shown) = self.scene.shown() else {
-            for EyeTarget { color, depth, .. } in to {
+            for EyeTarget { color, depth, .. } in to.pairs().flatten() {
                 if let Some(DepthTarget { to, .. }) = depth {
                     gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
                     gl.clear_rectangle(to.origin, to.size, Some(pair.depth.clear_value()));
@@ -48,11 +68,11 @@ impl Viewer {
             }
             return Ok(());
         };
-        if self.method.show_again(&self.settings, self.now_ns, pair, to)? {
+        if self.method.show_again(&self.settings, self.now_ns, levels, to)? {
             return Ok(());
         }
         shown.move_on(self.now_ns)?;
-        if let Some(used) = self.method.render(shown, pair, to)? {
+        if let Some(used) = self.method.render(shown, levels, to)? {
             self.stats.guard_band(used);
         }
         Ok(())

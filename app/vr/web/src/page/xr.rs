@@ -4,8 +4,8 @@ use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, EyePair};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{Content as HudContent, Hud, Placement};
-use yoro_render::DepthCopy;
-use yoro_render::stereo::{DepthTarget, EyeTarget, StereoMethod as _, Substituted};
+use yoro_render::stereo::{DepthTarget, EyeTarget, LevelFrame, StereoMethod as _, Substituted};
+use yoro_render::{DepthCopy, PreparedScene};
 
 use super::error::sentence;
 use super::scene_show::SceneShow;
@@ -23,6 +23,8 @@ pub struct Headset {
     /// Colour and depth of each eye.
     eyes: [RenderTarget; 2],
     copy: DepthCopy,
+    /// Made for the first frame in levels.
+    levels: Option<LevelFrame>,
     hud: Hud,
 }
 
@@ -46,6 +48,7 @@ impl Headset {
         Ok(Headset {
             eyes: [eye()?, eye()?],
             copy: DepthCopy::new(&page.gl).map_err(sentence)?,
+            levels: None,
             hud: Hud::new(&page.gl).map_err(sentence)?,
         })
     }
@@ -68,17 +71,34 @@ impl Headset {
         let Some(pair) = eyes(views, &page.settings, &page.walker, size) else {
             return Err(JsError::new("The headset's views cannot be understood."));
         };
-        let Headset { eyes: images, copy, hud } = self;
+        let Headset { eyes: images, copy, levels: made, hud } = self;
         images.iter_mut().try_for_each(|image| image.resize(size)).map_err(sentence)?;
         let mut fits = true;
         match &mut page.content {
             Content::Scene(scene) => {
                 let SceneShow { prepared, method, .. } = &mut **scene;
+                let levels = page.settings.levels(&pair);
                 let to = [0, 1].map(|i| EyeTarget {
                     depth: Some(DepthTarget { to: images[i].depth_only(), copy }),
                     ..EyeTarget::of(&images[i])
                 });
-                method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).map_err(sentence)?;
+                let PreparedScene { renderer, scene } = prepared;
+                match levels {
+                    Some(levels) => {
+                        let frame = match made {
+                            Some(frame) => frame,
+                            none => none.insert(LevelFrame::new(&page.gl, false).map_err(sentence)?),
+                        };
+                        let colors = [0, 1].map(|i| images[i].color_only());
+                        frame.render(method, (renderer, scene), &levels, &colors).map_err(sentence)?;
+                        // Composed eyes have no depth: the browser moves them as if all were far away.
+                        for image in images.iter().map(RenderTarget::depth_only) {
+                            page.gl.bind_framebuffer(image.framebuffer, image.origin, image.size);
+                            page.gl.clear_rectangle(image.origin, image.size, Some(DEPTH.clear_value()));
+                        }
+                    }
+                    None => method.render_to(renderer, scene, &pair, &to).map_err(sentence)?,
+                }
                 fits = !matches!(method.report().substituted, Some(Substituted::Eyes(_)));
             }
             Content::Stream(stream) => {
@@ -91,7 +111,7 @@ impl Headset {
         }
         if !text.is_empty() {
             let panel = hud.set(HudContent { text, progress: None }, Placement::Below);
-            panel.draw_into_eyes(&pair, &[0, 1].map(|i| images[i].color_only()));
+            panel.draw_into_eyes(&pair, &pair, &[0, 1].map(|i| images[i].color_only()));
         }
         Ok(fits)
     }

@@ -81,6 +81,19 @@ pub const UNDRAWN: &str = "undrawn";
 /// PSNR (RGB) in dB in the columns at the other eye's outer border that a guard band serves.
 pub const BORDER_PSNR: &str = "border_psnr";
 
+/// Pixels that are rendered, of those of two full eyes.
+pub const SHADED: &str = "shaded";
+/// PSNR (RGB) in dB and SSIM (gaussian, RGB) within 20 degrees of the axis, against a full render.
+pub const FOVEA: [&str; 2] = ["fovea_psnr", "fovea_ssim"];
+/// The same beyond the inset of the level.
+pub const PERIPHERY: [&str; 2] = ["periphery_psnr", "periphery_ssim"];
+/// The same beyond the inset, against a render with the same levels.
+pub const ALIKE: [&str; 2] = ["alike_psnr", "alike_ssim"];
+/// The same within 3 pixels of silhouettes.
+pub const SILHOUETTES: [&str; 2] = ["silhouettes_psnr", "silhouettes_ssim"];
+/// Flicker beyond the inset from a frame to one 4.5 cm ahead, against two full renders, out of 255.
+pub const PERIPHERY_FLICKER: &str = "periphery_flicker";
+
 /// Wall-clock time of patching alone in ms, with the image in the memory in which the patcher works.
 pub const PATCH_MS: &str = "patch_ms";
 /// Time of the upload before and the readback after patching in ms; 0 for patchers on the CPU.

@@ -1,6 +1,7 @@
 //! Measures jobs round by round.
 
 mod emulated_runtime;
+mod foveation;
 mod frames;
 mod half_rate;
 mod patchers;
@@ -8,6 +9,8 @@ mod reprojection;
 mod sequences;
 mod stream;
 mod whole_frames;
+
+pub(super) use foveation::WAYS;
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -127,6 +130,7 @@ impl<'a> Runner<'a> {
             Measure::Frames { .. } => self.frames(job, &mut prepared, done),
             Measure::Flicker => self.flicker(job, &mut prepared),
             Measure::GuardBand => self.guard_band(job, &mut prepared),
+            Measure::Foveation => self.foveation(job, &mut prepared, done),
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Reprojection(displaced) => self.reprojection(job, displaced, &mut prepared),
             Measure::HalfRate(motion) => self.half_rate(job, motion, &mut prepared),
@@ -154,6 +158,7 @@ impl<'a> Runner<'a> {
         }
         let views = match job.measure {
             Measure::Frames { .. }
+            | Measure::Foveation
             | Measure::Patchers
             | Measure::Reprojection(Displaced::Canted)
             | Measure::Executed(_)

@@ -2,13 +2,14 @@
 
 use anyhow::Context as _;
 
+use super::foveation::Way;
 use super::{Runner, left_out};
 use crate::bench::contender::Contender;
 use crate::bench::job::Job;
 use crate::bench::prepared::PreparedContender;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::Views;
-use yoro::eyes::{DepthConvention, DepthRange, EyePair};
+use yoro::eyes::{DepthConvention, DepthRange, EyePair, FoveationLevel};
 use yoro_estimate::{FrameModel, GPUS, Lamps, MULTIVIEW, March, Meter};
 use yoro_files::interrupt;
 use yoro_render::stereo::{Method, Pipeline, StereoFrame};
@@ -46,6 +47,7 @@ impl Runner<'_> {
                 meters.push((gpu.gpu, meter));
             }
         }
+        let mut foveated = Way::both(self.gl, job, FoveationLevel::Medium)?;
         let mut frame = StereoFrame::new(self.gl, job.eyes.size)?;
         let mut measurements: Vec<Measurement> = Vec::new();
         let mut push = |name: &str, metric: String, value: f64| {
@@ -91,15 +93,53 @@ impl Runner<'_> {
                 }
                 self.bar.inc(1);
             }
+            for way in &mut foveated {
+                interrupt::check()?;
+                let recorder = self.recorder.as_ref().context("whole frames need a recorder")?;
+                recorder.start();
+                way.render_levels(prepared, pair)?;
+                let commands = recorder.take();
+                // Shares of the eye's pixels, and the counts, of the levels that are synthesized.
+                let mut levels = Vec::new();
+                if way.is_synthesis
+                    && let Some((_, meter)) = meters.first_mut()
+                {
+                    for views in way.views(&reversed(pair))? {
+                        let pixels = |size: [u32; 2]| f64::from(size[0]) * f64::from(size[1]);
+                        let share = pixels(views.target.size) / pixels(pair.size);
+                        levels.push((share, meter.count_views(prepared, &views)?, views));
+                    }
+                }
+                let each = |meter: &Meter, metric: &str| -> Vec<(f64, f64)> {
+                    let march = March::of(&commands);
+                    let of = levels.iter().map(|(share, counts, views)| {
+                        (*share, find(&meter.values(views, counts, views.target.size, march), metric))
+                    });
+                    of.collect()
+                };
+                let sum =
+                    |parts: &[(f64, f64)]| parts.iter().map(|(share, value)| share * value).sum::<f64>();
+                let laws = meters.first().map_or(0.0, |(_, meter)| {
+                    let parts = each(meter, metric::LAW_PIXEL);
+                    sum(&parts) / parts.iter().map(|(share, _)| share).sum::<f64>().max(f64::MIN_POSITIVE)
+                });
+                let costs =
+                    model.frame(&commands, pair.size, &mut lamps, laws).with_context(|| way.name.clone())?;
+                costs.into_iter().for_each(|(metric, value)| push(&way.name, metric, value));
+                for (gpu, meter) in meters.iter().filter(|_| way.is_synthesis) {
+                    for (metric, pass) in PASSES {
+                        push(&way.name, format!("slots/{gpu}/{pass}"), sum(&each(meter, metric)));
+                    }
+                }
+                self.bar.inc(1);
+            }
         }
         self.finish_round(job, 0, records, measurements)
     }
 
     /// Returns the lights that reach the surfaces visible to the dominant eye.
     fn lamps(&self, prepared: &mut PreparedScene, pair: &EyePair) -> anyhow::Result<Lamps> {
-        // Only reversed depth can be carried.
-        let depth = DepthRange { convention: DepthConvention::Reversed, ..pair.depth };
-        let view = EyePair { depth, ..*pair }.view(pair.dominant);
+        let view = reversed(pair).view(pair.dominant);
         let mut targets = ViewTargets::default();
         let PreparedScene { renderer, scene } = prepared;
         let rendered = renderer.render(&mut targets, scene, &view, Selection::All)?;
@@ -107,4 +147,10 @@ impl Runner<'_> {
         reader.copy(&rendered.depth, view.size)?;
         Ok(Lamps::new(&view, &reader.read(), &scene.lights))
     }
+}
+
+/// Returns the eyes with the only depth that can be carried.
+fn reversed(pair: &EyePair) -> EyePair {
+    let depth = DepthRange { convention: DepthConvention::Reversed, ..pair.depth };
+    EyePair { depth, ..*pair }
 }

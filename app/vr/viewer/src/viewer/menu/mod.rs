@@ -12,9 +12,9 @@ use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_gl::Destination;
 use yoro_settings::{Setting, Settings};
 
-/// The quality levels: name, `render-scale`, `adaptive` and `msaa`.
-const QUALITIES: [(&str, f32, bool, u32); 3] =
-    [("saving", 0.7, true, 2), ("balanced", 1.0, false, 4), ("best", 1.4, false, 4)];
+/// The quality levels: name, `render-scale`, `adaptive`, `msaa` and `foveation`.
+const QUALITIES: [(&str, f32, bool, u32, &str); 3] =
+    [("saving", 0.7, true, 2, "medium"), ("balanced", 1.0, false, 4, "auto"), ("best", 1.4, false, 4, "off")];
 
 impl Viewer {
     /// Updates the menu with the head's pose relative to the viewpoint and the rays of controllers, each along its
@@ -129,11 +129,12 @@ impl Viewer {
             }
             Item::Quality => {
                 let at = self.quality().map_or(1, |at| (at + 1) % QUALITIES.len());
-                let (_, scale, adaptive, msaa) = QUALITIES[at];
+                let (_, scale, adaptive, msaa, foveation) = QUALITIES[at];
                 self.want(&[
                     ("render-scale", scale.to_string()),
                     ("adaptive", adaptive.to_string()),
                     ("msaa", msaa.to_string()),
+                    ("foveation", foveation.into()),
                 ])
             }
             Item::Reset => self.reset(),
@@ -181,7 +182,7 @@ impl Viewer {
         let Settings { render_scale, adaptive, .. } = self.settings;
         QUALITIES
             .iter()
-            .position(|&(_, scale, is_adaptive, _)| (scale, is_adaptive) == (render_scale, adaptive))
+            .position(|&(_, scale, is_adaptive, ..)| (scale, is_adaptive) == (render_scale, adaptive))
     }
 
     /// Returns the settings that the menu asks for, once, for the display to apply.

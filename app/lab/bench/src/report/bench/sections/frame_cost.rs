@@ -41,7 +41,10 @@ impl<'a> Entry<'a> {
             (CONVENTIONAL, _) => "two renders".into(),
             (estimate::MULTIVIEW, true) => "multiview, vertices once".into(),
             (estimate::MULTIVIEW, false) => "multiview, vertices twice".into(),
-            (name, _) => name.into(),
+            (name, _) => match name.strip_prefix("conventional-") {
+                Some(level) => format!("two renders, {level} foveation"),
+                None => name.into(),
+            },
         }
     }
 

@@ -4,6 +4,7 @@ mod cells;
 mod complexity;
 mod dots;
 mod flicker;
+mod foveation;
 mod frame_cost;
 mod frame_time;
 mod labels;
@@ -26,7 +27,7 @@ type MakeSection = fn(&Suite) -> Section;
 
 /// The suites in the paper's order, with the functions that make their sections. A suite can have several, because the
 /// paper treats frame time, quality and overhead of the same eight scenes in three places.
-const ORDER: [(bench::Suite, MakeSection); 14] = [
+const ORDER: [(bench::Suite, MakeSection); 15] = [
     (bench::Suite::Scenes, frame_time::section),
     (bench::Suite::Complexity, complexity::section),
     (bench::Suite::Scenes, quality::section),
@@ -40,6 +41,7 @@ const ORDER: [(bench::Suite, MakeSection); 14] = [
     (bench::Suite::Resolution, sweeps::resolution),
     (bench::Suite::AntiAliasing, labels::anti_aliasing),
     (bench::Suite::Flicker, flicker::section),
+    (bench::Suite::Foveation, foveation::section),
     (bench::Suite::Stream, stream::section),
 ];
 
