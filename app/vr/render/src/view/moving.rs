@@ -102,9 +102,10 @@ impl Moving {
         if seconds == self.seconds {
             return false;
         }
-        let loops = self.motion.loops.iter().map(|&length| f64::from(length)).filter(|length| *length > 0.0);
+        let mut loops =
+            self.motion.loops.iter().map(|&length| f64::from(length)).filter(|length| *length > 0.0);
         let starts_over = |length: f64| (self.seconds / length).floor() != (seconds / length).floor();
-        self.has_moved = (seconds - self.seconds).abs() < LONGEST_STEP && !loops.into_iter().any(starts_over);
+        self.has_moved = (seconds - self.seconds).abs() < LONGEST_STEP && !loops.any(starts_over);
         self.seconds = seconds;
         self.motion.at(seconds, &mut self.moment);
         self.mesh.rewrite(&self.moment.vertices);
