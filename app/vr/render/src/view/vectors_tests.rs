@@ -77,7 +77,9 @@ fn a_jump_is_no_motion() {
     let mut pass = VectorPass::new(gl).unwrap();
     let mut fastest = |seconds| {
         rig.renderer.set_time(&mut rig.scene, seconds).unwrap();
-        rig.renderer.draw_all(&mut targets, &rig.scene, std::slice::from_ref(&view), true, None).unwrap();
+        rig.renderer
+            .draw_all(&mut targets, &(&rig.scene).into(), std::slice::from_ref(&view), true, None)
+            .unwrap();
         let image = targets.depth(view.size, Eye::Left, [0, 0]);
         let step = Step { view, now: view, then: view, ndc: Ndc::ZeroToOne };
         pass.draw_moving(&rig.scene, &step).unwrap();
