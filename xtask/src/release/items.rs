@@ -73,8 +73,8 @@ pub const DESCRIPTIONS: [Description; 13] = [
     Description {
         parts: ["yoro-openxr-layer", "linux"],
         title: "OpenXR applications that render one view",
-        tested: "x86_64: hello_xr on Monado; arm64: it is linked",
-        untested: "a headset, Steam Frame",
+        tested: "x86_64, of another build: hello_xr on Monado",
+        untested: "arm64, headsets, Steam Frame",
         same: Same::Compilers,
     },
     Description {
@@ -94,8 +94,8 @@ pub const DESCRIPTIONS: [Description; 13] = [
     Description {
         parts: ["yoro-", "linux-x86_64.tar.xz"],
         title: "the program: render, measure, stream, OpenXR",
-        tested: "all tests; a picture in a bare Debian",
-        untested: "headsets",
+        tested: "all tests, of another build",
+        untested: "a system without Rust, headsets",
         same: Same::Compilers,
     },
     Description {
