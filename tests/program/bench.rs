@@ -287,6 +287,11 @@ fn whole_frames_are_counted_for_every_method_and_gpu() {
             // same as two renders.
             assert!((0.9..1.1).contains(&(both / two)), "{gpu}: {both} of {two}");
             assert!(ours > 0.5 * two, "{gpu}: {ours} of {two}");
+            // With levels, a fifth to two fifths of the pixels are rendered: less than as a whole, but not for nothing.
+            let levels = ["conventional-medium", "yoro-medium"]
+                .map(|contender| sum(contender, &format!("slots/{gpu}/")));
+            assert!(levels[0] < two && levels[1] < ours && levels[1] < levels[0], "{gpu}: {levels:?}");
+            assert!(levels[1] > 0.1 * two, "{gpu}: {levels:?} of {two}");
         }
         // Each pixel of both eyes shows either a surface or the sky.
         assert!(sum("conventional", "fragments/surfaces") >= 2.0);

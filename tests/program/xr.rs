@@ -12,13 +12,13 @@ use image::{Rgb, RgbImage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use xtask::maintain::monado::{self, Running};
-use yoro::eyes::{Eye, EyePair, Frustum};
+use yoro::eyes::{DepthRange, Eye, EyePair, Frustum, Pose};
 use yoro_context::{Backend, Headless};
 use yoro_media::rgb_image;
 use yoro_metrics::{Channels, Quality};
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
-    Aim, At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
+    Aim, At, Event, Eye as ScriptEye, Fault, Input, Insets, POISON, Pictures, Script, State, VARIABLE, What,
 };
 use yoro_render::stereo::{self, Method, StereoFrame};
 use yoro_render::{GpuScene, Renderer};
@@ -456,6 +456,7 @@ fn missing_extensions_are_worked_around() {
         "XR_EXT_performance_settings",
         "XR_EXT_local_floor",
         "XR_BD_controller_interaction",
+        "XR_VARJO_quad_views",
     ];
     let missing_extensions = optional.map(str::to_owned).into();
     let simulated = Simulated::new(&Script { missing_extensions, ..Script::default() });
@@ -634,6 +635,211 @@ fn asymmetric_eyes_are_synthesized_well() {
     let (whole, border) = synthesized("prototype", asymmetric([1024; 2]));
     assert!(whole.ssim_gaussian > 0.97, "{whole:?}");
     assert!(border.ssim_gaussian > 0.97, "at the outer border: {border:?}");
+}
+
+/// Returns a headset with insets of 20 degrees that follow the gaze.
+fn with_insets(cant_degrees: f32) -> Script {
+    let gaze = vec![(0, [0.0, 0.0]), (20, [25.0, -12.0]), (40, [60.0, 40.0])];
+    let insets = Some(Insets { size: [112; 2], radius_degrees: 20.0, gaze });
+    let pictures = Some(Pictures { folder: PathBuf::new(), from: 1 });
+    let mut script = Script { insets, poison: true, pictures, ..Script::default() }.asymmetric();
+    script.eyes.iter_mut().for_each(|eye| eye.cant_degrees = cant_degrees);
+    script
+}
+
+/// With the extension and with OpenXR 1.1 alone, for parallel and for canted eyes.
+#[test]
+fn four_views_are_submitted_where_the_runtime_has_insets() {
+    for (cant_degrees, missing) in [(0.0, None), (5.0, Some("XR_VARJO_quad_views"))] {
+        let missing_extensions = missing.into_iter().map(str::to_owned).collect();
+        let script = Script { missing_extensions, ..with_insets(cant_degrees) };
+        let [real, made] = ["conventional", "yoro"].map(|method| {
+            let simulated = Simulated::new(&script);
+            let run = simulated.succeed(&format!("--method {method} --frames 8 --set foveation=high --json"));
+            assert_eq!(
+                (&run.json()["views"], &run.json()["inset-size"]),
+                (&json!("quad"), &json!([112, 112]))
+            );
+            simulated
+        });
+        let views = made.views();
+        assert!(views.len() >= 8 && views.iter().all(|(_, views)| views.len() == 4));
+        for view in views.iter().flat_map(|(_, views)| views) {
+            assert_eq!(view.depth.as_ref().unwrap().image.rect, view.image.rect);
+        }
+        let lefts: Vec<f32> = views.iter().map(|(_, views)| views[2].fov_degrees[0]).collect();
+        assert!(lefts.is_sorted_by(|a, b| a < b), "the inset follows the gaze: {lefts:?}");
+        let [real, made] =
+            [real, made].map(|run| [0, 1, 2, 3].map(|i| run.picture(&format!("view-{i}.png"))));
+        made.iter().for_each(assert_drawn);
+        assert_eq!(made[2].dimensions(), (112, 112));
+        // Two renders of canted eyes are not turned parallel, and have other frusta.
+        if cant_degrees == 0.0 {
+            let quality = |i: usize, of: usize| rgb(&made[i], &real[of]);
+            for (i, least) in [0.94, 0.999, 0.92, 0.999].into_iter().enumerate() {
+                assert!(quality(i, i).ssim_gaussian > least, "view {i}: {:?}", quality(i, i));
+            }
+            // The baseline is the same image to both eyes.
+            let [own, same] = [quality(2, 2), quality(3, 2)];
+            assert!(own.psnr.0 > same.psnr.0 + 3.0, "{own:?}, {same:?}");
+        }
+    }
+}
+
+/// A headset's foveation is `medium`, if nobody says otherwise.
+#[test]
+fn the_eyes_are_foveated_unless_the_settings_say_otherwise() {
+    let events = vec![event(At::Frame(12), What::Exit)];
+    let simulated = Simulated::new(&Script { events: events.clone(), ..with_insets(0.0) });
+    simulated.succeed("");
+    assert!(simulated.views().iter().all(|(_, views)| views.len() == 4));
+    let simulated = Simulated::new(&Script { events, ..with_insets(0.0) });
+    simulated.succeed("--set foveation=off");
+    assert!(simulated.views().iter().all(|(_, views)| views.len() == 2));
+}
+
+/// Without insets of the runtime, each eye is composed of its levels before it is submitted.
+#[test]
+fn foveated_eyes_are_composed_for_runtimes_without_insets() {
+    let script = Script {
+        eyes: asymmetric([512; 2]),
+        poison: true,
+        pictures: Some(Pictures { folder: PathBuf::new(), from: 1 }),
+        ..Script::default()
+    };
+    let [whole, foveated] = ["off", "medium"].map(|foveation| {
+        let simulated = Simulated::new(&script);
+        simulated.succeed(&format!("--frames 2 --set foveation={foveation}"));
+        simulated
+    });
+    let (_, views) = foveated.views().pop().unwrap();
+    for (i, view) in views.iter().enumerate() {
+        let depth = view.depth.as_ref().unwrap().image.rect;
+        assert_eq!(
+            (view.image.rect[2], depth[2..].to_vec()),
+            (512, vec![256, 256]),
+            "depth is the wide level's"
+        );
+        let [whole, foveated] = [&whole, &foveated].map(|run| run.picture(&format!("view-{i}.png")));
+        assert_drawn(&foveated);
+        assert!(foveated != whole);
+        let quality = rgb(&foveated, &whole);
+        // The axis, at the tangents of the frusta.
+        let [left, right, up, down] = view.fov_degrees.map(|angle| angle.to_radians().tan());
+        let axis = [-left / (right - left), up / (up - down)].map(|at| (at * 512.0) as u32);
+        let fovea = |image: &RgbImage| {
+            image::imageops::crop_imm(image, axis[0] - 40, axis[1] - 40, 80, 80).to_image()
+        };
+        let in_fovea = rgb(&fovea(&foveated), &fovea(&whole));
+        println!("view {i}: {quality:?}, in the fovea {in_fovea:?}");
+        assert!(quality.psnr.0 > 24.0 && in_fovea.psnr.0 > 45.0, "view {i}: {quality:?}, {in_fovea:?}");
+    }
+}
+
+/// The place of the runtime's space in the scene, as a run with a head at rest shows it.
+struct Place {
+    turn: Quat,
+    position: Vec3,
+}
+
+impl Place {
+    fn of(script: &Script) -> Place {
+        let still = Simulated::new(&Script { velocity: [0.0; 3], ..script.clone() });
+        let run = still.succeed("--frames 1 --capture captured --json");
+        let (_, pair, _) = captured(still.folder.path(), &run.json()).remove(0);
+        let (_, views) = still.views().remove(0);
+        let turn = pair.poses[0].orientation * Quat::from_array(views[0].orientation).inverse();
+        Place { turn, position: pair.poses[0].position - turn * Vec3::from(views[0].position) }
+    }
+
+    /// Returns the eyes of two views, after they have moved by this much.
+    fn eyes(&self, views: &[View], by: Vec3) -> EyePair {
+        let [left, right] = views else { panic!("{views:?}") };
+        EyePair {
+            poses: [left, right].map(|view| Pose {
+                position: self.position + self.turn * (Vec3::from(view.position) + by),
+                orientation: self.turn * Quat::from_array(view.orientation),
+            }),
+            frusta: [left, right].map(|view| {
+                let [left, right, up, down] = view.fov_degrees.map(f32::to_radians);
+                Frustum::from_fov(left, right, up, down)
+            }),
+            depth: DepthRange::PAPER,
+            size: [left.image.rect[2], left.image.rect[3]].map(|n| n as u32),
+            dominant: Eye::Right,
+        }
+    }
+}
+
+/// At half the rate the runtime makes every second frame of colour, depth and motion vectors of both eyes, by either
+/// extension, of whole eyes and of foveated ones. The frame that the simulated runtime makes is what is to be seen then.
+#[test]
+fn the_runtime_makes_the_frames_between_of_motion_vectors() {
+    let script = Script {
+        eyes: asymmetric([256; 2]),
+        vector_size: [64, 64],
+        velocity: [5.0, 1.5, -4.0],
+        pictures: Some(Pictures { folder: PathBuf::new(), from: 1 }),
+        ..Script::default()
+    };
+    let place = Place::of(&script);
+    let settings = Settings::resolve(None, CHEAP.map(str::to_owned)).unwrap();
+    let extensions = ["XR_EXT_frame_synthesis", "XR_FB_space_warp"];
+    // The truth is not foveated.
+    for (method, foveation, missing, least) in [
+        ("yoro", "off", None, 4.0),
+        ("yoro", "off", Some(0), 4.0),
+        ("yoro", "medium", Some(0), 2.0),
+        ("conventional", "off", None, 4.0),
+    ] {
+        let what = format!("{method}, foveation {foveation}, without {missing:?}");
+        let missing_extensions = missing.into_iter().map(|i| extensions[i].to_owned()).collect();
+        let simulated = Simulated::new(&Script { missing_extensions, ..script.clone() });
+        let run = simulated.succeed(&format!(
+            "--method {method} --frames 5 --set frame-rate=half --set foveation={foveation} --json"
+        ));
+        assert_eq!(run.json()["makes-frames"], extensions[missing.map_or(0, |i| 1 - i)], "{what}");
+        let moving: Vec<_> =
+            simulated.views().into_iter().filter(|(_, views)| views[0].synthesis.is_some()).collect();
+        assert!(moving.len() >= 4, "{what}: {}", moving.len());
+        let (_, views) = moving.last().unwrap();
+        for view in views {
+            let synthesis = view.synthesis.as_ref().unwrap();
+            assert_eq!(synthesis.is_space_warp, missing.is_some(), "{what}");
+            assert_eq!((synthesis.vectors.rect[2], synthesis.is_flat), (64, false), "{what}");
+        }
+        // Every second frame of the display: half of the time to the next one is one refresh.
+        let later = Vec3::from(script.velocity) / script.refresh_rates[0];
+        let truth = desktop("prototype", Method::Conventional, &place.eyes(views, later), &settings);
+        for (i, truth) in truth.iter().enumerate() {
+            let picture = |name: &str| rgb(&simulated.picture(&format!("{name}-{i}.png")), truth);
+            let [made, last] = [picture("between"), picture("view")];
+            println!("{what}: eye {i}: {made:?}, the last frame {last:?}");
+            assert!(made.psnr.0 > last.psnr.0 + least, "{what}: eye {i}: {made:?}, {last:?}");
+        }
+    }
+}
+
+/// A jump is no motion, and a runtime without extensions leaves the frames to the viewer.
+#[test]
+fn jumps_are_not_extrapolated() {
+    let events = vec![event(At::Frame(8), What::Recenter(30.0))];
+    let script = Script { events, ..Script::default() };
+    let simulated = Simulated::new(&script);
+    simulated.succeed("--frames 10 --set frame-rate=half");
+    let without: Vec<u32> = simulated
+        .views()
+        .into_iter()
+        .filter(|(frame, views)| *frame > 3 && views[0].synthesis.is_none())
+        .map(|(frame, _)| frame)
+        .collect();
+    assert_eq!(without.len(), 1, "{without:?}");
+
+    let missing_extensions = ["XR_EXT_frame_synthesis", "XR_FB_space_warp"].map(str::to_owned).into();
+    let simulated = Simulated::new(&Script { missing_extensions, ..Script::default() });
+    let run = simulated.succeed("--frames 4 --set frame-rate=half --json");
+    assert_eq!(run.json()["makes-frames"], Value::Null);
+    assert!(simulated.views().iter().all(|(_, views)| views[0].synthesis.is_none()));
 }
 
 /// `cargo test -p yoro --test program -- --ignored asymmetric --nocapture`. Symmetric eyes of the same width show which

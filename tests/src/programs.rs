@@ -7,7 +7,9 @@ use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
-use yoro::opengl::{AnyView, Composer, Gather, GlState, GuessedDepth, Options, Outputs};
+use yoro::opengl::{
+    AnyView, Composer, Extrapolator, Gather, GlState, GuessedDepth, Motion, Options, Outputs,
+};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_estimate::Recorder;
@@ -37,6 +39,7 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<BTreeSet<Pro
     let recorder = Recorder::new(gl);
     synthesis(gl, variants)?;
     rendering(gl, variants)?;
+    vectors(gl)?;
     patchers(gl)?;
     viewer(gl)?;
     Ok(recorder.programs().iter().map(|recipe| recipe.as_ref().clone()).collect())
@@ -64,6 +67,10 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     }
     for depth in [false, true] {
         AnyView::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
+        Motion::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
+    }
+    for depth_pairs in [false, true] {
+        Extrapolator::new(gl, &Options { depth_pairs, ..Options::default() })?;
     }
     Composer::new(gl, GlState::Leave, false)?;
     if variants == Variants::Every {
@@ -130,6 +137,20 @@ fn renderer(gl: &Rc<Context>, scene: Scene, all_settings: bool) -> anyhow::Resul
         methods(gl, &RenderSettings { shadow_map_size: 0, ..settings.clone() }, &scene)?;
         methods(gl, &RenderSettings { msaa: 1, ..settings.clone() }, &scene)?;
         methods(gl, &RenderSettings { shadow_map_size: 0, bloom: false, ..settings }, &scene)?;
+    }
+    Ok(())
+}
+
+/// Builds the programs of motion vectors, in the variants of materials and of depth.
+fn vectors(gl: &Rc<Context>) -> anyhow::Result<()> {
+    let define = |name: &&'static str| (*name, String::new());
+    let moving = ShaderSource::Raster { vertex: "render/motion.vert", fragment: "render/motion.frag" };
+    for names in [&[][..], &["CUTOUT"], &["CUTOUT", "DIFFUSE_MAP"]] {
+        Program::new(gl, moving, &names.iter().map(define).collect::<Vec<_>>())?;
+    }
+    for names in [&[][..], &["DEPTH_PAIRS"]] {
+        let defines: Vec<_> = names.iter().map(define).collect();
+        Program::new(gl, ShaderSource::Screen("render/vectors.frag"), &defines)?;
     }
     Ok(())
 }

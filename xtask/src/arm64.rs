@@ -16,8 +16,8 @@ use crate::rust::{Panic, Rust, build_std, source};
 
 /// Rust's name for the target.
 pub const TRIPLE: &str = "aarch64-unknown-linux-gnu";
-/// Mesa's EGL and OpenGL ES with its rasterizer, and what a linker needs. The packages of libgcc and of libstdc++ are
-/// missing here, since their names contain a number.
+/// Mesa's EGL and OpenGL ES with its rasterizer, and what a linker needs. The package of libgcc is missing here, since
+/// its name contains a number.
 const PACKAGES: [&str; 5] = ["libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri", "libc6-dev"];
 const QEMU: [&str; 2] = ["usr/bin/qemu-aarch64-static", "usr/bin/qemu-aarch64"];
 
@@ -71,7 +71,7 @@ impl System {
     /// Fetches and unpacks the system unless the folder is complete.
     fn make(folder: &Path) -> anyhow::Result<Self> {
         let root = folder.join("root");
-        make_once(folder, &format!("{} libstdc++ {}\n", PACKAGES.join(" "), QEMU.join(" ")), || {
+        make_once(folder, &format!("{} {}\n", PACKAGES.join(" "), QEMU.join(" ")), || {
             let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], None)?;
             for package in download(&apt)? {
                 // qemu's packages contain a program of several megabytes for each kind of processor.
@@ -92,18 +92,18 @@ impl System {
 /// Downloads the packages and their dependencies, and returns the files.
 fn download(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
     apt.update()?;
-    let newest = newest_libgcc(&apt.names("libgcc-")?)
+    let libgcc = newest_libgcc(&apt.names("libgcc-")?)
         .context("this distribution has no libgcc-dev for the linker")?;
     let mut packages: Vec<String> = PACKAGES.iter().map(|name| format!("{name}:arm64")).collect();
-    packages.extend([format!("libgcc-{newest}-dev:arm64"), format!("libstdc++-{newest}-dev:arm64")]);
-    packages.push("qemu-user-static:amd64".to_owned());
+    packages.extend([format!("{libgcc}:arm64"), "qemu-user-static:amd64".to_owned()]);
     apt.download(&packages)
 }
 
-/// Returns the largest number N of a package `libgcc-N-dev` among package names, one per line.
-fn newest_libgcc(names: &str) -> Option<u32> {
+/// Returns the `libgcc-N-dev` with the largest number among package names, one per line.
+fn newest_libgcc(names: &str) -> Option<String> {
     let number = |name: &str| name.strip_prefix("libgcc-")?.strip_suffix("-dev")?.parse::<u32>().ok();
-    names.lines().filter_map(number).max()
+    let newest = names.lines().filter_map(number).max()?;
+    Some(format!("libgcc-{newest}-dev"))
 }
 
 /// Returns a cargo that compiles and links for arm64 with `--target` [`TRIPLE`]. Fetches and installs what it needs.
@@ -113,21 +113,6 @@ fn newest_libgcc(names: &str) -> Option<u32> {
 /// Fails if something cannot be obtained on this machine.
 pub fn cargo() -> anyhow::Result<Command> {
     command(&System::make(&fetch()?)?, Panic::Unwind)
-}
-
-/// Has build scripts compile C and C++ for arm64.
-///
-/// # Errors
-/// Fails if the libraries cannot be obtained on this machine.
-pub fn use_compilers(cargo: &mut Command) -> anyhow::Result<()> {
-    let system = System::make(&folder()?)?;
-    let flags = format!("--target=aarch64-linux-gnu --sysroot={}", system.root.display());
-    for (variable, value) in
-        [("CC", "clang"), ("CXX", "clang++"), ("AR", "llvm-ar"), ("CFLAGS", &flags), ("CXXFLAGS", &flags)]
-    {
-        cargo.env(format!("{variable}_{}", TRIPLE.replace('-', "_")), value);
-    }
-    Ok(())
 }
 
 fn command(system: &System, panic: Panic) -> anyhow::Result<Command> {
@@ -168,7 +153,7 @@ mod tests {
     #[test]
     fn the_newest_libgcc_is_the_one_of_the_largest_number() {
         let names = "libgcc-9-dev\nlibgcc-s1\nlibgcc-12-dev\nlibgcc-13-dev-arm64-cross\nlibgcc-11-dev\n";
-        assert_eq!(newest_libgcc(names), Some(12));
+        assert_eq!(newest_libgcc(names).as_deref(), Some("libgcc-12-dev"));
         assert_eq!(newest_libgcc("libgcc-s1\n"), None);
     }
 }

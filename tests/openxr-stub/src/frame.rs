@@ -13,10 +13,11 @@ use crate::log::{Depth, Entry, Image, Layer, View};
 use crate::script::At;
 use crate::session::{Frame, fill_depth_range, views_of};
 use crate::space::{compose, inverse, pose, raw_pose};
+use crate::synthesis::{check_synthesis, submitted_synthesis, synthesize};
 use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden, in_chain};
 
 /// The time of frame 0.
-const BEGINNING_NS: i64 = 1_000_000_000;
+pub const BEGINNING_NS: i64 = 1_000_000_000;
 
 /// The pause in each frame before the first picture, so that empty frames do not slow down the loading of a scene.
 const LOADING_PAUSE: Duration = Duration::from_millis(5);
@@ -33,7 +34,7 @@ impl World {
 
     /// Returns the display time of the last frame that was waited for.
     pub fn time(&self) -> sys::Time {
-        sys::Time::from_nanos(BEGINNING_NS + i64::from(self.frames) * self.period_ns())
+        sys::Time::from_nanos(self.now_ns)
     }
 }
 
@@ -55,6 +56,9 @@ pub fn wait_frame(
 ) -> Answer {
     running(world, session)?;
     world.frames += 1;
+    // An application whose frames have motion vectors renders every second one.
+    let periods = if world.session(session)?.frames.former.is_some() { 2 } else { 1 };
+    world.now_ns += periods * world.period_ns();
     let number = world.frame();
     world.happen(|at| matches!(at, At::Frame(n) if *n == number));
     let time = world.time();
@@ -115,7 +119,7 @@ pub fn locate_views(
     } else {
         sys::ViewStateFlags::EMPTY
     };
-    let head = compose(inverse(base), world.head());
+    let head = compose(inverse(base), world.head_at(info.display_time.as_nanos()));
     let (ipd, length) = (world.script.ipd(frame), world.script.quaternion_length(frame));
     let views: Vec<(sys::Posef, sys::Fovf)> = (0..number as usize)
         .map(|i| {
@@ -174,6 +178,7 @@ pub fn end_frame(world: &mut World, session: sys::Session, info: &sys::FrameEndI
     }
     world.picture(|world| is_picture(world, &layers));
     write_pictures(world, &layers, frame.number)?;
+    synthesize(world, &layers, frame)?;
     world.log.write(&Entry::Frame { frame: frame.number, should_render: frame.should_render, layers });
     let unbind = world.script.unbind_context;
     let instance = world.current()?;
@@ -222,13 +227,14 @@ pub unsafe fn submitted(
             if views.len() == 4 {
                 check_insets(world, header.space, &views)?;
             }
+            check_synthesis(world, header.space, &views)?;
             Ok(Layer::Projection { views })
         }
         sys::StructureType::COMPOSITION_LAYER_QUAD => {
             // SAFETY: the structure has this type.
             let quad = unsafe { &*layer.cast::<sys::CompositionLayerQuad>() };
             pose(&quad.pose)?;
-            let image = submitted_image(world, &quad.sub_image, false)?;
+            let image = submitted_image(world, &quad.sub_image, Content::Color)?;
             Ok(Layer::Quad { image, size: [quad.size.width, quad.size.height] })
         }
         other => Err(forbidden(Code::ERROR_LAYER_INVALID, format!("{other:?} is not offered"))),
@@ -302,12 +308,14 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
         Code::ERROR_VALIDATION_FAILURE,
         format!("the frustum {fov:?} is none"),
     )?;
-    let image = submitted_image(world, &view.sub_image, false)?;
+    let image = submitted_image(world, &view.sub_image, Content::Color)?;
     // SAFETY: a chain of structures.
     let depth = unsafe {
         in_chain::<sys::CompositionLayerDepthInfoKHR>(view.next, sys::CompositionLayerDepthInfoKHR::TYPE)
     };
     let depth = depth.map(|info| submitted_depth(world, info)).transpose()?;
+    // SAFETY: the view's chain.
+    let synthesis = unsafe { submitted_synthesis(world, view.next) }?;
     let degrees = fov.map(f32::to_degrees);
     Ok(View {
         position: position.to_array(),
@@ -315,6 +323,7 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
         fov_degrees: degrees,
         image,
         depth,
+        synthesis,
     })
 }
 
@@ -324,23 +333,50 @@ fn submitted_depth(world: &mut World, info: &sys::CompositionLayerDepthInfoKHR) 
         Code::ERROR_VALIDATION_FAILURE,
         "depth is submitted without XR_KHR_composition_layer_depth",
     )?;
-    let (range, near_far) = ([info.min_depth, info.max_depth], [info.near_z, info.far_z]);
+    checked_depth(world, &info.sub_image, [info.min_depth, info.max_depth], [info.near_z, info.far_z])
+}
+
+/// Checks depth with its range and the distances in metres that this range stands for.
+pub fn checked_depth(
+    world: &mut World,
+    sub_image: &sys::SwapchainSubImage,
+    range: [f32; 2],
+    near_far: [f32; 2],
+) -> Result<Depth, Refusal> {
     let sane = range.iter().all(|depth| (0.0..=1.0).contains(depth))
         && range[0] < range[1]
         && near_far.iter().all(|z| *z > 0.0)
         && near_far[0] != near_far[1];
     forbid_if(!sane, Code::ERROR_VALIDATION_FAILURE, format!("depth {range:?} stands for {near_far:?} m"))?;
-    let image = submitted_image(world, &info.sub_image, true)?;
+    let image = submitted_image(world, sub_image, Content::Depth)?;
     // JSON has no infinity.
     Ok(Depth { image, range, near_far: near_far.map(|z| z.min(f32::MAX)) })
 }
 
-fn submitted_image(world: &mut World, image: &sys::SwapchainSubImage, depth: bool) -> Result<Image, Refusal> {
+/// What an image is submitted as.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Content {
+    Color,
+    Depth,
+    Vectors,
+}
+
+/// Checks an image, and returns its entry in the log.
+pub fn submitted_image(
+    world: &mut World,
+    image: &sys::SwapchainSubImage,
+    content: Content,
+) -> Result<Image, Refusal> {
     let ahead = world.script.acquires_ahead;
     let swapchain = world.swapchain(image.swapchain)?;
     let refuse = |what: String| Err(forbidden(Code::ERROR_VALIDATION_FAILURE, what));
-    if swapchain.is_depth() != depth {
-        return refuse(format!("the swapchain's format {:#x} is of the other kind", swapchain.format));
+    let fits = match content {
+        Content::Color => !swapchain.is_depth(),
+        Content::Depth => swapchain.is_depth(),
+        Content::Vectors => swapchain.is_signed(),
+    };
+    if !fits {
+        return refuse(format!("the swapchain's format {:#x} is none of {content:?}", swapchain.format));
     }
     if !ahead && !swapchain.acquired.is_empty() {
         return refuse("an image of the swapchain is still acquired".into());
@@ -384,7 +420,7 @@ fn is_picture(world: &mut World, layers: &[Layer]) -> bool {
 }
 
 /// Returns the pixels of a submitted image, beginning with the lowest row of its view.
-fn read(world: &mut World, image: &Image) -> Option<Vec<u8>> {
+pub fn read(world: &mut World, image: &Image) -> Option<Vec<u8>> {
     let texture = world.swapchain(sys::Swapchain::from_raw(image.swapchain)).ok()?.shown()?;
     let mut pixels = world.its_session().ok()?.graphics.read(texture, image.layer, image.rect)?;
     if image.upside_down {

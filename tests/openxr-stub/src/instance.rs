@@ -9,7 +9,7 @@ use sys::{Handle, Result as Code};
 
 use crate::log::Entry;
 use crate::script::{At, State};
-use crate::world::{Answer, Array, DONE, Event, Instance, World, forbid_if, forbidden, in_chain};
+use crate::world::{Answer, Array, DONE, Event, Instance, World, forbid_if, forbidden, in_chain, in_output};
 
 /// The API version that negotiation returns.
 pub const NEWEST: sys::Version = sys::Version::new(1, 1, 54);
@@ -21,9 +21,12 @@ pub const IMAGE_LAYOUT: &str = "XR_FB_composition_layer_image_layout";
 
 /// The extension for four views in instances of OpenXR 1.0.
 pub const QUAD_VIEWS: &str = "XR_VARJO_quad_views";
+/// The extensions for frames made of motion vectors.
+pub const FRAME_SYNTHESIS: &str = "XR_EXT_frame_synthesis";
+pub const SPACE_WARP: &str = "XR_FB_space_warp";
 
 /// The extensions that can be offered, with their versions.
-pub const EXTENSIONS: [(&str, u32); 17] = [
+pub const EXTENSIONS: [(&str, u32); 19] = [
     ("XR_KHR_opengl_es_enable", 8),
     ("XR_KHR_vulkan_enable", 8),
     ("XR_KHR_vulkan_enable2", 2),
@@ -41,6 +44,8 @@ pub const EXTENSIONS: [(&str, u32); 17] = [
     ("XR_MSFT_composition_layer_reprojection", 1),
     ("XR_META_recommended_layer_resolution", 1),
     (QUAD_VIEWS, 2),
+    (FRAME_SYNTHESIS, 1),
+    (SPACE_WARP, 2),
 ];
 
 /// Returns the string in an array of characters.
@@ -195,6 +200,17 @@ pub fn get_system_properties(
 ) -> Answer {
     world.instance(instance)?;
     check_system(system)?;
+    // SAFETY: the application's chain.
+    unsafe {
+        in_output(
+            properties.next,
+            |sizes: &mut sys::SystemSpaceWarpPropertiesFB| {
+                sizes.recommended_motion_vector_image_rect_width = world.script.vector_size[0];
+                sizes.recommended_motion_vector_image_rect_height = world.script.vector_size[1];
+            },
+            sys::SystemSpaceWarpPropertiesFB::TYPE,
+        );
+    }
     properties.system_id = system;
     properties.vendor_id = 0;
     put_text(&mut properties.system_name, "simulated headset");

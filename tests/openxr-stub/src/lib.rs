@@ -12,6 +12,7 @@
 //! Tests that link it as a Rust library call [`begin`] with a script, as often as they like.
 
 mod action;
+pub mod between;
 mod extension;
 mod frame;
 mod graphics;
@@ -21,6 +22,7 @@ pub mod script;
 mod session;
 mod space;
 mod swapchain;
+mod synthesis;
 mod table;
 mod world;
 

@@ -63,6 +63,31 @@ pub struct View {
     pub image: Image,
     /// The depth, if it was submitted.
     pub depth: Option<Depth>,
+    /// What frames are made of that the application does not render, if it was submitted.
+    #[serde(default)]
+    pub synthesis: Option<Synthesis>,
+}
+
+/// Motion vectors of a view (XR_EXT_frame_synthesis, XR_FB_space_warp).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Synthesis {
+    /// True by XR_FB_space_warp, whose vectors are in the NDC of the graphics interface. The others are in Vulkan's, but
+    /// for y, which grows with the rows of the image in both.
+    pub is_space_warp: bool,
+    /// The vectors: NDC of this frame minus NDC of the last one, before scale and offset.
+    pub vectors: Image,
+    /// What the vectors are multiplied by.
+    pub scale: [f32; 3],
+    /// What is added to them.
+    pub offset: [f32; 3],
+    /// The depth that belongs to them.
+    pub depth: Depth,
+    /// Position and orientation of this frame's space in the last one's, as the application moved it.
+    pub moved: ([f32; 3], [f32; 4]),
+    /// True if the vectors have two components.
+    pub is_flat: bool,
+    /// True if no frame should be made of this one.
+    pub is_skipped: bool,
 }
 
 /// A part of a swapchain's image.

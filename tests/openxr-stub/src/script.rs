@@ -28,6 +28,8 @@ pub struct Script {
     /// The inset views of `PRIMARY_STEREO_WITH_FOVEATED_INSET`, or `None` if it is not offered. Instances of OpenXR 1.0
     /// are offered it only with XR_VARJO_quad_views.
     pub insets: Option<Insets>,
+    /// The size in pixels that is recommended for motion vectors and their depth.
+    pub vector_size: [u32; 2],
     /// The left and the right eye. A configuration with one view has the left eye, without its offset.
     pub eyes: [Eye; 2],
     /// Distances between the eyes in metres, each with the frame from which it applies.
@@ -36,6 +38,10 @@ pub struct Script {
     pub position: [f32; 3],
     /// The head's rotation to the left.
     pub yaw_degrees: f32,
+    /// The head's velocity in metres a second, from the first picture on.
+    pub velocity: [f32; 3],
+    /// The head's rotation to the left in degrees a second, from the first picture on.
+    pub turn_degrees: f32,
     /// Frames without a valid head pose.
     pub untracked: Vec<u32>,
     /// Frames in which the views' quaternions have this length instead of 1, although the poses are reported as valid.
@@ -201,7 +207,8 @@ pub struct Aim {
 }
 
 /// Where pictures are written. `view-0.png` is the left eye's last image, `view-2.png` that of its inset, and
-/// `quad-0.png` that of the first quad layer, with alpha.
+/// `quad-0.png` that of the first quad layer, with alpha. `between-0.png` is the left eye's last frame that was made of
+/// motion vectors, for half the time until the next one.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Pictures {
@@ -211,8 +218,8 @@ pub struct Pictures {
     pub from: u32,
 }
 
-/// GL_SRGB8_ALPHA8, GL_RGBA8, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT16.
-const FORMATS: [i64; 5] = [0x8C43, 0x8058, 0x8CAC, 0x81A6, 0x81A5];
+/// GL_SRGB8_ALPHA8, GL_RGBA8, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT16, GL_RGBA16F.
+const FORMATS: [i64; 6] = [0x8C43, 0x8058, 0x8CAC, 0x81A6, 0x81A5, 0x881A];
 
 impl Default for Script {
     fn default() -> Script {
@@ -224,10 +231,13 @@ impl Default for Script {
             stereo: true,
             mono: true,
             insets: None,
+            vector_size: [32, 32],
             eyes: [Eye::default(); 2],
             ipd: vec![(0, 0.063)],
             position: [0.0, 1.6, 0.0],
             yaw_degrees: 0.0,
+            velocity: [0.0; 3],
+            turn_degrees: 0.0,
             untracked: Vec::new(),
             quaternion_lengths: Vec::new(),
             no_globals: false,

@@ -10,7 +10,9 @@ use crate::graphics::{self, Graphics};
 use crate::instance::check_system;
 use crate::log::Entry;
 use crate::script::State;
-use crate::world::{Answer, Array, DONE, Event, Instance, Refusal, World, forbid_if, forbidden, found};
+use crate::world::{
+    Answer, Array, DONE, Event, Instance, Refusal, World, forbid_if, forbidden, found, in_output,
+};
 
 pub struct Session {
     pub handle: u64,
@@ -40,6 +42,10 @@ pub struct FrameCalls {
     pub ended: u32,
     /// The number of frames that were waited for.
     pub count: u32,
+    /// The last frame, if it had motion vectors.
+    pub former: Option<crate::synthesis::Former>,
+    /// The pose of the last frame's projection layer's space, in the space of the floor.
+    pub space: Option<crate::space::Pose>,
 }
 
 #[derive(Clone, Copy)]
@@ -278,6 +284,7 @@ pub fn enumerate_view_configuration_views(
     let mut sizes: Vec<[u32; 2]> = world.script.eyes.iter().map(|eye| eye.size).collect();
     sizes.extend(world.script.insets.iter().flat_map(|insets| [insets.size; 2]));
     sizes.truncate(number);
+    let vector_size = world.script.vector_size;
     views.fill(&sizes, |view, [width, height]| {
         view.recommended_image_rect_width = *width;
         view.recommended_image_rect_height = *height;
@@ -286,7 +293,17 @@ pub fn enumerate_view_configuration_views(
         view.recommended_swapchain_sample_count = 1;
         view.max_swapchain_sample_count = 1;
         // SAFETY: the application's chain.
-        unsafe { fill_depth_range(view.next) };
+        unsafe {
+            fill_depth_range(view.next);
+            in_output(
+                view.next,
+                |sizes: &mut sys::FrameSynthesisConfigViewEXT| {
+                    sizes.recommended_motion_vector_image_rect_width = vector_size[0];
+                    sizes.recommended_motion_vector_image_rect_height = vector_size[1];
+                },
+                sys::FrameSynthesisConfigViewEXT::TYPE,
+            );
+        }
     })
 }
 
@@ -296,16 +313,11 @@ pub fn enumerate_view_configuration_views(
 /// # Safety
 /// The structures of the chain state their types.
 pub unsafe fn fill_depth_range(chain: *mut c_void) {
-    let mut next = chain.cast::<sys::BaseOutStructure>();
-    // SAFETY: a structure of the chain.
-    while let Some(structure) = unsafe { next.as_mut() } {
-        if structure.ty == sys::ViewConfigurationDepthRangeEXT::TYPE {
-            // SAFETY: the structure has this type.
-            let range = unsafe { &mut *next.cast::<sys::ViewConfigurationDepthRangeEXT>() };
-            (range.recommended_near_z, range.recommended_far_z) = DEPTH_RANGE;
-        }
-        next = structure.next;
-    }
+    let fill = |range: &mut sys::ViewConfigurationDepthRangeEXT| {
+        (range.recommended_near_z, range.recommended_far_z) = DEPTH_RANGE;
+    };
+    // SAFETY: same contract.
+    unsafe { in_output(chain, fill, sys::ViewConfigurationDepthRangeEXT::TYPE) };
 }
 
 pub fn enumerate_environment_blend_modes(

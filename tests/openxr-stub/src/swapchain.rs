@@ -15,6 +15,7 @@ pub struct Swapchain {
     pub format: i64,
     pub size: [u32; 2],
     pub layers: u32,
+    pub usage: sys::SwapchainUsageFlags,
     pub textures: Vec<Texture>,
     /// Acquired images, oldest first, with true for those that were waited for.
     pub acquired: VecDeque<(usize, bool)>,
@@ -27,6 +28,11 @@ impl Swapchain {
     pub fn is_depth(&self) -> bool {
         // The formats' numbers in GL, then in Vulkan.
         matches!(self.format, 0x81A5 | 0x81A6 | 0x8CAC | 0x88F0 | 0x8CAD | 124 | 126 | 129 | 130)
+    }
+
+    /// True for signed numbers of 16 bits in the format of GL or of Vulkan.
+    pub fn is_signed(&self) -> bool {
+        matches!(self.format, 0x881A | 97)
     }
 
     /// Returns the texture that is shown.
@@ -107,6 +113,7 @@ pub fn create_swapchain(
         format: info.format,
         size,
         layers: info.array_size,
+        usage: info.usage_flags,
         textures,
         acquired: VecDeque::new(),
         released: None,

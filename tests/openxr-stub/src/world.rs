@@ -101,6 +101,10 @@ pub struct World {
     last_handle: u64,
     /// The number of frames that were waited for.
     pub frames: u32,
+    /// The display time of the last of them, in nanoseconds.
+    pub now_ns: i64,
+    /// The display time of the first picture, from which on the head moves.
+    pub moves_from_ns: Option<i64>,
     /// The number of frames before the first picture, once there has been one.
     before_picture: Option<u32>,
     /// The number of polls that returned no event.
@@ -159,6 +163,22 @@ pub unsafe fn in_chain<'a, T>(next: *const c_void, ty: sys::StructureType) -> Op
         next = structure.next;
     }
     None
+}
+
+/// Fills in the structures of a type in a chain of outputs.
+///
+/// # Safety
+/// `next` begins a chain of structures of the types that they state, and `ty` is the type of `T`.
+pub unsafe fn in_output<T>(next: *mut c_void, write: impl Fn(&mut T), ty: sys::StructureType) {
+    let mut next = next.cast::<sys::BaseOutStructure>();
+    // SAFETY: every structure of a chain begins with this header.
+    while let Some(structure) = unsafe { next.as_mut() } {
+        if structure.ty == ty {
+            // SAFETY: the structure has this type.
+            write(unsafe { &mut *next.cast::<T>() });
+        }
+        next = structure.next;
+    }
 }
 
 /// An event for the application.
@@ -251,6 +271,8 @@ impl World {
             happened: vec![false; script.events.len()],
             last_handle: 0,
             frames: 0,
+            now_ns: crate::frame::BEGINNING_NS,
+            moves_from_ns: None,
             before_picture: None,
             idle_polls: 0,
             unavailable: 0,
@@ -327,6 +349,7 @@ impl World {
         if self.before_picture.is_none() && look(self) {
             // The next frame is frame 1.
             self.before_picture = Some(self.frames.saturating_sub(1));
+            self.moves_from_ns = Some(self.now_ns);
             crate::frame::IS_BLANK.store(false, Ordering::Relaxed);
         }
     }
@@ -402,8 +425,16 @@ impl World {
         self.calls.clone()
     }
 
-    /// Returns the head's pose in the space of the floor.
+    /// Returns the head's pose in the space of the floor, at the last frame's display time.
     pub fn head(&self) -> (Quat, Vec3) {
-        (Quat::from_rotation_y(self.script.yaw_degrees.to_radians()), self.script.position.into())
+        self.head_at(self.now_ns)
+    }
+
+    /// Returns the head's pose in the space of the floor, at a time in nanoseconds.
+    pub fn head_at(&self, time_ns: i64) -> (Quat, Vec3) {
+        let seconds = self.moves_from_ns.map_or(0.0, |from| (time_ns - from).max(0) as f32 * 1e-9);
+        let Script { position, velocity, yaw_degrees, turn_degrees, .. } = &self.script;
+        let yaw = yaw_degrees + turn_degrees * seconds;
+        (Quat::from_rotation_y(yaw.to_radians()), Vec3::from(*position) + Vec3::from(*velocity) * seconds)
     }
 }

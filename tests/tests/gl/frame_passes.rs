@@ -44,7 +44,10 @@ fn passes_do_what_they_declare() {
                 let settings = RenderSettings { msaa, shadow_map_size: 64, ..RenderSettings::default() };
                 let mut scene = scene::every_material(style);
                 scene::keep_plain_and_full(&mut scene);
-                move_squares(&mut scene);
+                // An automatic guard band is drawn whole where something moves.
+                if style == ShadingStyle::Anime {
+                    move_squares(&mut scene);
+                }
                 recorder.start();
                 let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
                 let made = pieces(&recorder.take(), &Assumed::default());

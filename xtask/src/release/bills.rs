@@ -17,9 +17,8 @@ const NAME: &str = "bill";
 const PLACE: &str = "yoro";
 
 /// A published file's name without the version, its target, cargo's arguments, and the folder of its package.
-const FILES: [(&str, &str, &[&str], &str); 7] = [
+const FILES: [(&str, &str, &[&str], &str); 6] = [
     ("yoro-{}-linux-x86_64", "x86_64-unknown-linux-gnu", &[], "app/program"),
-    ("yoro-{}-linux-aarch64", "aarch64-unknown-linux-gnu", &["--no-default-features"], "app/program"),
     ("yoro-{}.apk", "aarch64-linux-android", &[], "android"),
     ("yoro-openxr-layer-{}", "x86_64-unknown-linux-gnu", &[], "app/engines/openxr-layer"),
     ("yoro-library-{}", "x86_64-unknown-linux-gnu", &[], "app/engines/c"),

@@ -18,8 +18,6 @@ use super::{bills, program};
 pub enum Item {
     /// The program for Linux on this machine's processor
     Program,
-    /// The program for Linux on arm64
-    ProgramAarch64,
     /// The APKs and the bundle
     Apk,
     /// The OpenXR layer for Linux and Android
@@ -64,7 +62,7 @@ pub struct Description {
 const NO_DEVICE: &str = "a device";
 
 /// The descriptions, the first that fits counts.
-pub const DESCRIPTIONS: [Description; 14] = [
+pub const DESCRIPTIONS: [Description; 13] = [
     Description {
         parts: ["yoro-", ".cdx.json"],
         title: "what is in a file, in CycloneDX 1.5",
@@ -75,8 +73,8 @@ pub const DESCRIPTIONS: [Description; 14] = [
     Description {
         parts: ["yoro-openxr-layer", "linux"],
         title: "OpenXR applications that render one view",
-        tested: "x86_64: hello_xr on Monado; arm64: it is linked",
-        untested: "a headset, Steam Frame",
+        tested: "x86_64, of another build: hello_xr on Monado",
+        untested: "arm64, headsets, Steam Frame",
         same: Same::Compilers,
     },
     Description {
@@ -96,15 +94,8 @@ pub const DESCRIPTIONS: [Description; 14] = [
     Description {
         parts: ["yoro-", "linux-x86_64.tar.xz"],
         title: "the program: render, measure, stream, OpenXR",
-        tested: "all tests; a picture in a bare Debian",
-        untested: "headsets",
-        same: Same::Compilers,
-    },
-    Description {
-        parts: ["yoro-", "linux-aarch64.tar.xz"],
-        title: "the program for arm64, Steam Frame, without `serve`",
-        tested: "a picture in qemu",
-        untested: "Steam Frame",
+        tested: "all tests, of another build",
+        untested: "a system without Rust, headsets",
         same: Same::Compilers,
     },
     Description {
@@ -167,9 +158,8 @@ pub const DESCRIPTIONS: [Description; 14] = [
 
 impl Item {
     /// All items, in the order in which they are made.
-    pub const ALL: [Item; 11] = [
+    pub const ALL: [Item; 10] = [
         Item::Program,
-        Item::ProgramAarch64,
         Item::Apk,
         Item::Layer,
         Item::Library,
@@ -194,8 +184,7 @@ impl Item {
         let folder = target_folder()?.join("package");
         fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
         match self {
-            Item::Program => Ok(vec![program::native(&folder)?]),
-            Item::ProgramAarch64 => Ok(vec![program::aarch64(&folder)?]),
+            Item::Program => Ok(vec![program::archive(&folder)?]),
             Item::Apk => apks(&folder),
             Item::Layer => package(&[Target::LayerLinux, Target::LayerLinuxAarch64, Target::AndroidLayer]),
             Item::Library => package(&[Target::Linux, Target::LinuxAarch64, Target::Android]),

@@ -383,12 +383,47 @@ impl ForeignTarget {
         is_depth: bool,
         size: [u32; 2],
     ) -> Result<ForeignTarget, GlError> {
-        let raw_gl = gl.raw();
-        let attachment = if is_depth { glow::DEPTH_ATTACHMENT } else { glow::COLOR_ATTACHMENT0 };
         let target = ForeignTarget { framebuffer: Framebuffer::new(gl)?, size };
         // SAFETY: the framebuffer is new, and the caller's texture is of the kind that the call takes.
         unsafe {
-            raw_gl.bind_framebuffer(glow::FRAMEBUFFER, Some(target.framebuffer.raw));
+            if is_depth {
+                gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(target.framebuffer.raw));
+                gl.raw().draw_buffers(&[glow::NONE]);
+            }
+            target.attach(gl, texture, layer, is_depth)?;
+        }
+        Ok(target)
+    }
+
+    /// Attaches a texture for depth beside the colour, in place of the last one.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] if the driver cannot render to both.
+    ///
+    /// # Safety
+    /// As for [`ForeignTarget::new`].
+    pub unsafe fn attach_depth(
+        &self,
+        gl: &Context,
+        texture: glow::Texture,
+        layer: Option<u32>,
+    ) -> Result<(), GlError> {
+        // SAFETY: same contract.
+        unsafe { self.attach(gl, texture, layer, true) }
+    }
+
+    unsafe fn attach(
+        &self,
+        gl: &Context,
+        texture: glow::Texture,
+        layer: Option<u32>,
+        is_depth: bool,
+    ) -> Result<(), GlError> {
+        let raw_gl = gl.raw();
+        let attachment = if is_depth { glow::DEPTH_ATTACHMENT } else { glow::COLOR_ATTACHMENT0 };
+        // SAFETY: a framebuffer of this context, and the caller's texture is of the kind that the call takes.
+        unsafe {
+            raw_gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
             match layer {
                 Some(layer) => raw_gl.framebuffer_texture_layer(
                     glow::FRAMEBUFFER,
@@ -405,11 +440,8 @@ impl ForeignTarget {
                     0,
                 ),
             }
-            if is_depth {
-                raw_gl.draw_buffers(&[glow::NONE]);
-            }
             match raw_gl.check_framebuffer_status(glow::FRAMEBUFFER) {
-                glow::FRAMEBUFFER_COMPLETE => Ok(target),
+                glow::FRAMEBUFFER_COMPLETE => Ok(()),
                 status => Err(GlError::Unsupported(format!(
                     "the GL driver cannot render to a texture that was handed to it (status 0x{status:x})"
                 ))),

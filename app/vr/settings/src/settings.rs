@@ -164,7 +164,7 @@ settings! {
         range(|s| (0.25..=2.0).contains(&s.render_scale), "give a factor from 0.25 to 2"),
     /// Render each eye at full density only around its axis, as far as 30 (`low`) or 20 degrees (`medium`, `high`). Beyond,
     /// with half (`low`, `medium`) or a third of the pixels along each axis. Not with `timewarp=position`.
-    "foveation" foveation: Option<FoveationLevel> = None; auto("off"),
+    "foveation" foveation: Option<FoveationLevel> = None; auto("headsets: medium; others: off"),
     /// Lower render scale and ImBuffer to hold the display's refresh rate and to spare a hot device.
     "adaptive" adaptive: bool = false,
     /// Phones: how the finished image follows the head after rendering. `position` copies the depth of both eyes and adds
@@ -225,9 +225,11 @@ fn is_positive(number: f32) -> bool {
 }
 
 impl Settings {
-    /// Returns the defaults for measurements and pictures, in which nothing depends on the device: the method is yoro.
+    /// Returns the defaults for measurements and pictures, in which nothing depends on the device: the method is yoro, and
+    /// nothing is foveated.
     pub fn measured() -> Settings {
-        Settings { method: Method::Synthesized.into(), ..Settings::default() }
+        let foveation = Some(FoveationLevel::Off);
+        Settings { method: Method::Synthesized.into(), foveation, ..Settings::default() }
     }
 
     /// Returns the defaults, changed as by [`Settings::changed`].

@@ -246,6 +246,11 @@ impl MethodSlot {
             }
     }
 
+    /// True if the last frame's targets have motion vectors.
+    pub fn has_motion(&self) -> bool {
+        self.made.as_ref().is_some_and(|made| made.report().has_motion)
+    }
+
     /// Forgets what was rendered: after a jump, nothing is where it would have moved to.
     fn forget_render(&mut self) {
         (self.rendered_ns, self.step_ns, self.was_shown_again) = (None, None, false);

@@ -8,7 +8,7 @@ use glow::HasContext as _;
 use openxr_sys as sys;
 use sys::Result as Code;
 
-use super::{Graphics, Texture};
+use super::{Graphics, Texture, depth};
 use crate::script::POISON;
 use crate::world::{Refusal, forbid_if};
 
@@ -146,8 +146,36 @@ impl Gles {
     }
 }
 
+/// Reads a rectangle of the bound framebuffer as RGBA of a type with this many bytes a pixel.
+pub(super) fn read_pixels(
+    gl: &glow::Context,
+    [x, y, width, height]: [i32; 4],
+    kind: u32,
+    bytes: i32,
+) -> Vec<u8> {
+    let mut pixels = vec![0; (width * height * bytes) as usize];
+    // SAFETY: the array has room for all pixels, and the application's pack state is restored.
+    unsafe {
+        let buffer = gl.get_parameter_buffer(glow::PIXEL_PACK_BUFFER_BINDING);
+        let settings =
+            [glow::PACK_ALIGNMENT, glow::PACK_ROW_LENGTH, glow::PACK_SKIP_ROWS, glow::PACK_SKIP_PIXELS];
+        let before = settings.map(|setting| gl.get_parameter_i32(setting));
+        gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+        for (setting, value) in settings.into_iter().zip([4, 0, 0, 0]) {
+            gl.pixel_store_i32(setting, value);
+        }
+        let target = glow::PixelPackData::Slice(Some(&mut pixels));
+        gl.read_pixels(x, y, width, height, glow::RGBA, kind, target);
+        for (setting, value) in settings.into_iter().zip(before) {
+            gl.pixel_store_i32(setting, value);
+        }
+        gl.bind_buffer(glow::PIXEL_PACK_BUFFER, buffer);
+    }
+    pixels
+}
+
 /// Returns the texture's name in GL.
-fn name(texture: Texture) -> Option<glow::Texture> {
+pub(super) fn name(texture: Texture) -> Option<glow::Texture> {
     u32::try_from(texture.raw).ok().and_then(NonZeroU32::new).map(glow::NativeTexture)
 }
 
@@ -222,31 +250,25 @@ impl Graphics for Gles {
     }
 
     fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
-        let [x, y, width, height] = rect;
-        self.with_layer(texture, layer, |gl| {
-            let mut pixels = vec![0; (width * height * 4) as usize];
-            // SAFETY: the array has room for all pixels, and the application's pack state is restored.
-            unsafe {
-                let buffer = gl.get_parameter_buffer(glow::PIXEL_PACK_BUFFER_BINDING);
-                let settings = [
-                    glow::PACK_ALIGNMENT,
-                    glow::PACK_ROW_LENGTH,
-                    glow::PACK_SKIP_ROWS,
-                    glow::PACK_SKIP_PIXELS,
-                ];
-                let before = settings.map(|setting| gl.get_parameter_i32(setting));
-                gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
-                for (setting, value) in settings.into_iter().zip([4, 0, 0, 0]) {
-                    gl.pixel_store_i32(setting, value);
-                }
-                let target = glow::PixelPackData::Slice(Some(&mut pixels));
-                gl.read_pixels(x, y, width, height, glow::RGBA, glow::UNSIGNED_BYTE, target);
-                for (setting, value) in settings.into_iter().zip(before) {
-                    gl.pixel_store_i32(setting, value);
-                }
-                gl.bind_buffer(glow::PIXEL_PACK_BUFFER, buffer);
-            }
-            pixels
-        })
+        self.with_layer(texture, layer, |gl| read_pixels(gl, rect, glow::UNSIGNED_BYTE, 4))
+    }
+
+    fn read_numbers(
+        &mut self,
+        texture: Texture,
+        layer: u32,
+        rect: [i32; 4],
+        is_depth: bool,
+    ) -> Option<Vec<f32>> {
+        if !self.is_current() {
+            return None;
+        }
+        let bytes = if is_depth {
+            depth::read(self.gl(), texture, layer, rect)?
+        } else {
+            self.with_layer(texture, layer, |gl| read_pixels(gl, rect, glow::FLOAT, 16))?
+        };
+        let number = |four: &[u8]| f32::from_ne_bytes([four[0], four[1], four[2], four[3]]);
+        Some(bytes.chunks_exact(4).map(number).collect())
     }
 }

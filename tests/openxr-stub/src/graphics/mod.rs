@@ -1,5 +1,6 @@
 //! The application's graphics: OpenGL ES in its context, or Vulkan on its device.
 
+mod depth;
 mod gles;
 mod vulkan;
 
@@ -43,6 +44,18 @@ pub trait Graphics: Send {
 
     /// Reads a rectangle of stored colour values as RGBA, beginning with the lowest row.
     fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>>;
+
+    /// Reads a rectangle of floats or of depth as four numbers for each pixel, beginning with the lowest row. Depth is
+    /// the first of them. `None` where no application of the tests submits motion vectors: on Vulkan.
+    fn read_numbers(
+        &mut self,
+        _texture: Texture,
+        _layer: u32,
+        _rect: [i32; 4],
+        _is_depth: bool,
+    ) -> Option<Vec<f32>> {
+        None
+    }
 }
 
 /// Returns the graphics binding in a chain of structures, and its name.

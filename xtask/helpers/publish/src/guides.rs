@@ -20,7 +20,7 @@ const PAGES: [(&str, &str); 6] = [
     ("Try it", "index.html"),
     ("How it works", "guides/docs/method.html"),
     ("Guides", "guides/index.html"),
-    ("Rust API", "api/yoro/index.html"),
+    ("Rust API", "api/index.html"),
     ("Results", "guides/docs/results.html"),
     ("Downloads", "downloads.html"),
 ];

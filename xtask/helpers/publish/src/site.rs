@@ -25,6 +25,9 @@ const NO_FILES: &str = "# Downloads\n\nThis copy of the site was made without th
 pub fn complete(site: &Path, release: Option<&Path>) -> anyhow::Result<()> {
     guides::write_all(site)?;
     write(&site.join(guides::FOLDER).join("style.css"), style()?)?;
+    let place = Path::new("api/index.html");
+    let guide = guides::guide(&crates(site)?, |target| Some(target.to_owned()));
+    write(&site.join(place), guides::page(place, &guide.title, &guide.body))?;
     let place = Path::new("downloads.html");
     let text = match release {
         Some(release) => downloads(site, release)?,
@@ -39,6 +42,18 @@ pub fn complete(site: &Path, release: Option<&Path>) -> anyhow::Result<()> {
     let links = guides::navigation(Path::new("index.html"));
     let links = links.split_once('\n').map_or("", |(_, others)| others).trim();
     write(&page, [before, links, after].concat())
+}
+
+/// Returns the list of the documented crates.
+fn crates(site: &Path) -> anyhow::Result<String> {
+    let folder = site.join("api");
+    let entries = fs::read_dir(&folder).with_context(|| format!("{} cannot be read", folder.display()))?;
+    let paths = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;
+    let crates = paths.iter().filter(|path| path.join("all.html").is_file());
+    let mut names: Vec<_> = crates.filter_map(|path| path.file_name()?.to_str()).collect();
+    names.sort_unstable();
+    let lines: Vec<String> = names.iter().map(|name| format!("- [`{name}`]({name}/index.html)\n")).collect();
+    Ok(format!("# Rust API\n\n{}", lines.concat()))
 }
 
 /// Returns the page's palette, and the style of the guides.
@@ -76,10 +91,13 @@ mod tests {
         let (site, release) = (folder.path().join("site"), folder.path().join("release"));
         write(&site.join("index.html"), format!("<nav>{PLACE}</nav>")).unwrap();
         write(&site.join("icon.svg"), "").unwrap();
-        write(&site.join("api/yoro/index.html"), "").unwrap();
+        for name in ["index", "all"] {
+            write(&site.join(format!("api/yoro/{name}.html")), "").unwrap();
+        }
         complete(&site, None).unwrap();
         let (report, passed) = links::check(&site).unwrap();
         assert!(passed, "{report}");
+        assert!(read(&site.join("api/index.html")).unwrap().contains("href=\"yoro/index.html\""));
         let page = read(&site.join("index.html")).unwrap();
         assert!(page.starts_with("<nav><a href=\"guides/docs/method.html\">How it works</a>"), "{page}");
 

@@ -16,9 +16,13 @@ pub struct Moving {
     /// Index of the first piece's cluster; the others follow it.
     first: usize,
     seconds: f64,
-    /// True if the last [`Moving::set_time`] moved anything.
+    /// True if the last [`Moving::set_time`] moved everything on in a short step. After a jump, or when a loop starts over,
+    /// nothing would go on as it came.
     has_moved: bool,
 }
+
+/// The longest step in seconds that is not a jump.
+const LONGEST_STEP: f64 = 0.25;
 
 /// A part that moves.
 struct Piece {
@@ -81,7 +85,8 @@ impl Moving {
         }
     }
 
-    /// Binds the mesh, with the positions before the last change of the time at the location after those of vertices.
+    /// Binds the mesh, with the positions before the last step of the time, if it was one, at the location after those of
+    /// vertices.
     pub fn bind_with_former(&self) {
         self.mesh.bind_with_former(self.has_moved);
     }
@@ -93,10 +98,14 @@ impl Moving {
 
     /// Moves everything, and the clusters' bounds, to its place at a time in seconds. False if it is there already.
     pub fn set_time(&mut self, seconds: f64, clusters: &mut [Cluster]) -> bool {
-        self.has_moved = seconds != self.seconds;
-        if !self.has_moved {
+        self.has_moved = false;
+        if seconds == self.seconds {
             return false;
         }
+        let mut loops =
+            self.motion.loops.iter().map(|&length| f64::from(length)).filter(|length| *length > 0.0);
+        let starts_over = |length: f64| (self.seconds / length).floor() != (seconds / length).floor();
+        self.has_moved = (seconds - self.seconds).abs() < LONGEST_STEP && !loops.any(starts_over);
         self.seconds = seconds;
         self.motion.at(seconds, &mut self.moment);
         self.mesh.rewrite(&self.moment.vertices);

@@ -64,6 +64,36 @@ fn vectors_are_those_of_what_has_moved() {
     }
 }
 
+/// After a jump, and where a loop starts over, surfaces have the vectors of what stands still.
+#[test]
+fn a_jump_is_no_motion() {
+    let head = open();
+    let gl = head.gl();
+    let mut rig = Rig::new(gl, moving(), &settings());
+    let view = view(DepthConvention::Reversed);
+    let mut targets = rig.renderer.targets(Layout::Single).unwrap();
+    let formats = [(Format::Rgba32F, Filter::Nearest)];
+    let target = RenderTarget::new(gl, view.size, &formats, Some(Format::Depth32F)).unwrap();
+    let mut pass = VectorPass::new(gl).unwrap();
+    let mut fastest = |seconds| {
+        rig.renderer.set_time(&mut rig.scene, seconds).unwrap();
+        rig.renderer
+            .draw_all(&mut targets, &(&rig.scene).into(), std::slice::from_ref(&view), true, None)
+            .unwrap();
+        let image = targets.depth(view.size, Eye::Left, [0, 0]);
+        let step = Step { view, now: view, then: view, ndc: Ndc::ZeroToOne };
+        pass.draw_moving(&rig.scene, &step).unwrap();
+        pass.write((&image, &view), &step, [0, 0], &Destination::whole(&target)).unwrap();
+        let vectors = target.read_rgba32f(0, [0, 0], view.size);
+        vectors.iter().map(|v| v[0].abs().max(v[1].abs())).fold(0.0, f32::max)
+    };
+    let [jump, step, again, late] = [1.0, 1.1, 1.1, 2.4].map(&mut fastest);
+    // The clock starts over after 2.5 seconds, where everything leaps back.
+    let after = fastest(2.55);
+    assert!(step > 0.01, "{step}");
+    assert!([jump, again, late, after].iter().all(|v| *v < 1e-5), "{:?}", [jump, again, late, after]);
+}
+
 fn check(
     gl: &std::rc::Rc<yoro_gl::Context>,
     target: &RenderTarget,

@@ -338,7 +338,7 @@ impl Cardboard {
         self.follow(action)?;
         let pair = self.eyes(head);
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
-        let levels = attached.levels.as_mut().zip(self.viewer.levels(&pair));
+        let levels = attached.levels.as_mut().zip(self.viewer.levels(&pair, pair.axes()));
         attached.is_in_levels = levels.is_some();
         match (levels, &mut attached.timewarp) {
             (Some((frame, levels)), _) => {

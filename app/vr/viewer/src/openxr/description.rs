@@ -19,12 +19,15 @@ pub struct Description {
     pub runtime: String,
     /// The system's name.
     pub system: String,
-    /// `stereo` or `mono`.
+    /// `stereo`, `mono`, or `quad`: stereo with an inset for each eye.
     pub views: String,
     /// The size in pixels that the runtime recommends for each eye.
     pub recommended: [u32; 2],
     /// The size in pixels of the images.
     pub size: [u32; 2],
+    /// The size in pixels of the insets' images, if the runtime shows insets.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inset_size: Option<[u32; 2]>,
     /// Format of the images.
     pub format: String,
     /// True if both eyes are layers of one swapchain.
@@ -39,15 +42,22 @@ pub struct Description {
     pub refresh_rates: Vec<f32>,
     /// True if controllers are used.
     pub input: bool,
+    /// The extension by which the runtime makes frames of motion vectors, if it is used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub makes_frames: Option<&'static str>,
 }
 
 impl Description {
     /// Logs the description in one line.
     pub(super) fn log(&self) {
         let [w, h] = self.size;
+        if let Some(extension) = self.makes_frames {
+            log::info!("the runtime makes frames of motion vectors by {extension}");
+        }
+        let insets = self.inset_size.map_or(String::new(), |[w, h]| format!(", insets of {w}x{h}"));
         let rates: Vec<String> = self.refresh_rates.iter().map(|hz| format!("{hz:.0}")).collect();
         log::info!(
-            "OpenXR: {}, system {}, {} views of {w}x{h} ({} as {}, {}), depth {}, hidden part {}, refresh rates {}",
+            "OpenXR: {}, system {}, {} views of {w}x{h}{insets} ({} as {}, {}), depth {}, hidden part {}, refresh rates {}",
             self.runtime,
             self.system,
             self.views,

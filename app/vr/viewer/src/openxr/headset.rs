@@ -12,6 +12,7 @@ use super::runtime::Runtime;
 use super::session::{Progress, Session};
 use crate::event::Event;
 use crate::viewer::Viewer;
+use yoro::eyes::FoveationLevel;
 use yoro_context::Graphics;
 use yoro_gl::Context;
 
@@ -70,9 +71,11 @@ impl Headset {
         runtime: Runtime,
         graphics: &dyn Graphics,
         gl: &Rc<Context>,
-        viewer: Viewer,
+        mut viewer: Viewer,
         options: Options,
     ) -> Result<Headset, XrError> {
+        let defaulted = viewer.set_default_foveation(FoveationLevel::Medium);
+        defaulted.map_err(|error| XrError::Context(error.to_string()))?;
         let open = || Session::open(&runtime, graphics, gl, viewer.settings(), &options);
         // A runtime that is just being started or replaced may lose the first session.
         let session = open().or_else(|error| {
@@ -84,7 +87,7 @@ impl Headset {
             make_current(graphics)?;
             open()
         })?;
-        Ok(Headset {
+        let mut headset = Headset {
             description: session.description().clone(),
             session: Some(session),
             viewer,
@@ -100,7 +103,16 @@ impl Headset {
             is_refused: false,
             is_over: false,
             capture: false,
-        })
+        };
+        headset.share_frames()?;
+        Ok(headset)
+    }
+
+    /// Tells the viewer whether the runtime makes frames.
+    fn share_frames(&mut self) -> Result<(), XrError> {
+        let makes_frames = self.session.as_ref().is_some_and(Session::makes_frames);
+        let shared = self.viewer.let_runtime_make_frames(makes_frames);
+        shared.map_err(|error| XrError::Context(error.to_string()))
     }
 
     /// Makes a frame as soon as the runtime wants one; the runtime sets the pace. A session that is lost or fails is
@@ -193,6 +205,7 @@ impl Headset {
                 self.session = Some(session);
                 self.frames = 0;
                 self.restarts += 1;
+                self.share_frames()?;
                 Ok(Step::Idle)
             }
             Err(error) => self.fail(error, graphics),

@@ -11,7 +11,7 @@ use super::error::{XrError, call, check};
 use super::graphics::make_current;
 use yoro::eyes::Eye;
 use yoro_context::Graphics;
-use yoro_gl::{Context, Destination, ForeignTarget, Format, Image};
+use yoro_gl::{Context, Destination, ForeignTarget, Format, GlError, Image};
 use yoro_render::stereo::EyeTarget;
 
 /// A compositor that holds an image for longer than this is considered stuck.
@@ -25,6 +25,8 @@ pub(super) struct Kind {
     /// GL's internal format.
     pub format: u32,
     pub is_depth: bool,
+    /// True if the runtime reads depth. It always reads colour.
+    pub is_sampled: bool,
     pub size: [u32; 2],
     pub layers: u32,
 }
@@ -50,11 +52,13 @@ impl Images {
         session: &xr::Session<xr::OpenGlEs>,
         kind: Kind,
     ) -> Result<Images, XrError> {
-        let usage = if kind.is_depth {
-            xr::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT
-        } else {
-            xr::SwapchainUsageFlags::COLOR_ATTACHMENT | xr::SwapchainUsageFlags::SAMPLED
-        };
+        let mut usage = xr::SwapchainUsageFlags::COLOR_ATTACHMENT;
+        if kind.is_depth {
+            usage = xr::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        }
+        if kind.is_sampled || !kind.is_depth {
+            usage |= xr::SwapchainUsageFlags::SAMPLED;
+        }
         let swapchain = session.create_swapchain(&xr::SwapchainCreateInfo {
             create_flags: xr::SwapchainCreateFlags::EMPTY,
             usage_flags: usage,
@@ -153,6 +157,22 @@ impl Images {
         Some(image.get(layer as usize)?.part(size))
     }
 
+    /// Attaches a layer of another swapchain's acquired image as depth, and returns the destination for both.
+    fn with_depth(
+        &self,
+        gl: &Context,
+        (layer, size): (u32, [u32; 2]),
+        (depth, depth_layer): (&Images, u32),
+    ) -> Result<Option<Destination>, GlError> {
+        let target = self.current.and_then(|current| self.framebuffers.get(current)?.get(layer as usize));
+        let texture = depth.current.and_then(|current| depth.textures.get(current));
+        let Some((target, texture)) = target.zip(texture) else { return Ok(None) };
+        let depth_layer = (depth.kind.layers > 1).then_some(depth_layer);
+        // SAFETY: the texture lives as long as its swapchain, which is closed together with the framebuffers.
+        unsafe { target.attach_depth(gl, *texture, depth_layer) }?;
+        Ok(Some(target.part(size)))
+    }
+
     /// Returns the acquired image, if it is a plain 2-D texture of 8-bit sRGB.
     fn texture(&self) -> Option<(glow::Texture, Image)> {
         let Kind { format, size, layers, .. } = self.kind;
@@ -228,6 +248,20 @@ impl EyeImages {
             images.destination(layer, size)
         });
         Some([left?, right?])
+    }
+
+    /// Returns the destinations of both eyes, with the depth of other images.
+    pub fn with_depth(
+        &self,
+        gl: &Context,
+        depth: &EyeImages,
+        size: [u32; 2],
+    ) -> Result<Option<[Destination; 2]>, GlError> {
+        let of = |eye| {
+            let (images, layer) = self.of(eye);
+            images.with_depth(gl, (layer, size), depth.of(eye))
+        };
+        Ok(of(Eye::Left)?.zip(of(Eye::Right)?).map(|(left, right)| [left, right]))
     }
 
     /// Returns the images of both eyes as targets, without depth.

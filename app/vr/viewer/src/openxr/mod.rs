@@ -18,6 +18,7 @@ mod headset;
 mod images;
 mod input;
 mod mask;
+mod motion;
 pub mod runtime;
 mod session;
 mod storage;

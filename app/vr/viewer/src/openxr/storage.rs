@@ -13,7 +13,7 @@ use yoro_gl::{
     Context, Destination, Filter, Format, GlError, MultisampleTarget, Program, RasterState, RenderTarget,
     ShaderSource, Texture, TileTarget,
 };
-use yoro_render::stereo::{EyeTarget, StereoFrame};
+use yoro_render::stereo::{EyeTarget, LevelTargets, StereoFrame};
 
 /// Formats of eye images, best first: stored as sRGB, with enough bits for linear colour, or neither.
 pub(super) const COLOR_FORMATS: [u32; 4] = [glow::SRGB8_ALPHA8, glow::RGBA16F, glow::RGB10_A2, glow::RGBA8];
@@ -64,8 +64,9 @@ fn set_encoding(gl: &Context, on: bool) {
 /// How the eyes get into the runtime's images.
 pub(super) struct Storage {
     gl: Rc<Context>,
-    /// The target into which eyes are drawn first, and the pass that decodes them; `None` if they are drawn directly.
-    detour: Option<(StereoFrame, Program)>,
+    /// The targets into which the wide eyes and the insets are drawn first, and the pass that decodes them; `None` if they
+    /// are drawn directly.
+    detour: Option<([StereoFrame; 2], Program)>,
 }
 
 impl Storage {
@@ -78,7 +79,7 @@ impl Storage {
     fn by(gl: &Rc<Context>, is_direct: bool) -> Result<Storage, GlError> {
         let detour = (!is_direct).then(|| -> Result<_, GlError> {
             let program = Program::new(gl, ShaderSource::Screen("openxr/transfer.frag"), &[])?;
-            Ok((StereoFrame::new(gl, [1, 1])?, program))
+            Ok(([StereoFrame::new(gl, [1, 1])?, StereoFrame::new(gl, [1, 1])?], program))
         });
         Ok(Storage { gl: gl.clone(), detour: detour.transpose()? })
     }
@@ -89,22 +90,25 @@ impl Storage {
     }
 
     /// Begins a frame. Returns the targets for eyes that are to end up in `images`.
-    pub fn begin(&mut self, images: [EyeTarget<'static>; 2]) -> Result<[EyeTarget<'static>; 2], GlError> {
+    pub fn begin(&mut self, images: LevelTargets<'static>) -> Result<LevelTargets<'static>, GlError> {
         match &mut self.detour {
             None => {
                 set_encoding(&self.gl, false);
                 Ok(images)
             }
-            Some((frame, _)) => {
-                frame.resize(images[0].color.size)?;
-                Ok(frame.targets())
+            Some((frames, _)) => {
+                for (frame, images) in frames.iter_mut().zip(images.pairs()) {
+                    frame.resize(images[0].color.size)?;
+                }
+                let [wide, inset] = frames.each_ref().map(StereoFrame::targets);
+                Ok(LevelTargets { wide, inset: images.inset.map(|_| inset) })
             }
         }
     }
 
     /// Ends a frame.
-    pub fn end(&self, images: [Destination; 2]) {
-        let Some((frame, program)) = &self.detour else {
+    pub fn end(&self, images: &LevelTargets) {
+        let Some((frames, program)) = &self.detour else {
             set_encoding(&self.gl, true);
             return;
         };
@@ -114,10 +118,12 @@ impl Storage {
                 set_encoding(&self.gl, true);
             }
             self.gl.set_raster_state(&RasterState::SCREEN);
-            for (eye, to) in yoro::eyes::Eye::BOTH.into_iter().zip(images) {
-                self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
-                program.bind().texture_of("source", 0, frame.eye(eye).color(0));
-                self.gl.draw_screen();
+            for (frame, images) in frames.iter().zip(images.pairs()) {
+                for (eye, EyeTarget { color: to, .. }) in yoro::eyes::Eye::BOTH.into_iter().zip(images) {
+                    self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+                    program.bind().texture_of("source", 0, frame.eye(eye).color(0));
+                    self.gl.draw_screen();
+                }
             }
         });
     }
@@ -207,8 +213,8 @@ mod tests {
             let mut storage = Storage::by(gl, is_direct).unwrap();
             let image = || RenderTarget::new(gl, size, &[(Format::Srgb8Alpha8, Filter::Nearest)], None);
             let images = [image().unwrap(), image().unwrap()];
-            let to = [Destination::whole(&images[0]), Destination::whole(&images[1])];
-            let eyes = storage.begin(to.map(EyeTarget::rectangle)).unwrap();
+            let to = images.each_ref().map(|image| EyeTarget::rectangle(Destination::whole(image)));
+            let eyes = storage.begin((&to).into()).unwrap().wide;
             for x in 0..64u32 {
                 for (eye, EyeTarget { color: way, .. }) in Eye::BOTH.into_iter().zip(eyes) {
                     gl.bind_framebuffer(way.framebuffer, way.origin, way.size);
@@ -216,7 +222,7 @@ mod tests {
                     gl.fill([x, 0], [1, 4], [grey, grey, grey, 1.0]);
                 }
             }
-            storage.end(to);
+            storage.end(&(&to).into());
             for eye in Eye::BOTH {
                 let row = images[eye.index()].read_rgba8(0, [0, 1], [64, 1]);
                 for (x, pixel) in row.chunks_exact(4).enumerate() {

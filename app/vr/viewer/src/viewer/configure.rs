@@ -6,6 +6,7 @@ use super::{Viewer, profiling};
 use crate::error::ViewerError;
 use crate::loading::SceneSource;
 use crate::options::{render_settings, stereo_options};
+use yoro::eyes::FoveationLevel;
 use yoro_gl::GlError;
 use yoro_render::Renderer;
 use yoro_settings::Settings;
@@ -23,8 +24,19 @@ impl Viewer {
         Ok(())
     }
 
+    /// Sets the foveation where the settings give none.
+    ///
+    /// # Errors
+    /// As [`Viewer::configure`].
+    pub fn set_default_foveation(&mut self, level: FoveationLevel) -> Result<(), ViewerError> {
+        self.default_foveation = Some(level);
+        let folders = self.folders.clone();
+        self.change(self.settings.clone(), &folders)
+    }
+
     /// See [`Viewer::configure`].
     pub(crate) fn change(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
+        let settings = Settings { foveation: settings.foveation.or(self.default_foveation), ..settings };
         // Everything that a mistake in the settings can make fail comes first.
         let source = self.other_scene(&settings, folders)?;
         let driver = self.attached.as_ref().map(|attached| attached.gl.capabilities());

@@ -1,5 +1,7 @@
 //! Frames: from the loaded scene to the frame's report, and a log line every second.
 
+use glam::Vec3;
+
 use super::{Attached, Viewer};
 use crate::adaptive::Load;
 use crate::caption::Status;
@@ -41,10 +43,11 @@ impl Viewer {
 
     /// Returns the levels in which the settings' foveation renders a pair of eyes; `None` if it is rendered as a whole: by
     /// [`FoveationLevel::Off`](yoro::eyes::FoveationLevel::Off), and where neither eye can be synthesized from the other.
-    pub fn levels(&self, pair: &EyePair) -> Option<Levels> {
+    /// `axes` are the directions in the world along which the eyes look: [`EyePair::axes`] of the display's own eyes.
+    pub fn levels(&self, pair: &EyePair, axes: [Vec3; 2]) -> Option<Levels> {
         let foveation = self.settings.foveation.unwrap_or_default().foveation()?;
         let guard = stereo_options(&self.settings, self.method.pipeline()).guard_band;
-        pair.levels(Some(&foveation), Gaze::Axes(pair.axes()), guard).ok().filter(|l| l.inset.is_some())
+        pair.levels(Some(&foveation), Gaze::Axes(axes), guard).ok().filter(|l| l.inset.is_some())
     }
 
     /// Renders both eyes of each level of a frame into their targets, like [`Viewer::render_eyes`]. Nobody composes them: a
@@ -88,6 +91,11 @@ impl Viewer {
             self.make_method()?;
         }
         Ok(())
+    }
+
+    /// True if the targets of the last frame that asked for motion vectors got them.
+    pub fn has_motion(&self) -> bool {
+        self.scene_state() == SceneState::Ready && self.method.has_motion()
     }
 
     /// True if the display's runtime is to make every second frame.

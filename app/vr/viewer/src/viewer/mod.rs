@@ -36,7 +36,7 @@ use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
 use menu::Menu;
 use start::StartScreen;
-use yoro::eyes::Pose;
+use yoro::eyes::{FoveationLevel, Pose};
 use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::{Board, Hud};
@@ -84,6 +84,8 @@ pub struct Viewer {
     kept: Vec<(&'static str, String)>,
     is_kept_new: bool,
     start: StartScreen,
+    /// The foveation where the settings give none.
+    default_foveation: Option<FoveationLevel>,
 }
 
 impl Viewer {
@@ -110,6 +112,7 @@ impl Viewer {
             kept: Vec::new(),
             is_kept_new: false,
             start: StartScreen::default(),
+            default_foveation: None,
             settings,
         })
     }

@@ -7,7 +7,7 @@ use super::state::Session;
 use crate::openxr::error::{XrError, call};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, EyePair, EyesError, Frustum, GuardBand, Pose};
-use yoro_render::stereo;
+use yoro_render::stereo::{self, EyeLevels};
 use yoro_settings::Settings;
 
 /// The largest magnitude of a field of view's angles that is accepted, in radians.
@@ -18,56 +18,66 @@ const SHORTEST: f32 = 1e-3;
 const MOST_GROWTH: f32 = 1.5;
 
 impl Session {
-    /// Returns the eyes as the runtime predicts them; `None` while their poses are unknown.
+    /// Returns the eyes as the runtime predicts them, with their insets if it shows insets; `None` while their poses are
+    /// unknown. `sizes` are those of the eyes' images and of the insets'.
     pub(super) fn locate(
         &self,
         settings: &Settings,
         time: xr::Time,
-        size: [u32; 2],
-    ) -> Result<Option<EyePair>, XrError> {
+        sizes: [[u32; 2]; 2],
+    ) -> Result<Option<EyeLevels>, XrError> {
         let (flags, views) =
             call("xrLocateViews", self.session.locate_views(self.views, time, &self.spaces.ahead))?;
         if !flags.contains(xr::ViewStateFlags::ORIENTATION_VALID | xr::ViewStateFlags::POSITION_VALID) {
             return Ok(None);
         }
-        let [left, right] = match views.as_slice() {
-            [left, right] => [left, right],
-            [one] => [one, one],
+        let (eyes, insets) = match (views.as_slice(), self.inset.is_some()) {
+            ([left, right], false) => ([left, right], None),
+            ([one], false) => ([one, one], None),
+            ([left, right, left_inset, right_inset], true) => {
+                ([left, right], Some([left_inset, right_inset]))
+            }
             _ => return Err(XrError::Nonsense(format!("locates {} views", views.len()))),
         };
-        let mut frusta = [Frustum { left: 0.0, right: 0.0, bottom: 0.0, top: 0.0 }; 2];
-        for (frustum, view) in frusta.iter_mut().zip([left, right]) {
-            *frustum = to_frustum(&view.fov)
-                .ok_or_else(|| XrError::Nonsense(format!("gives an eye the field of view {:?}", view.fov)))?;
-        }
-        // An invalid pose counts as unknown, whatever the flags say.
-        let (Some(left), Some(right)) = (to_pose(&left.pose), to_pose(&right.pose)) else { return Ok(None) };
-        let (poses, dominant) = ([left, right], settings.dominant);
-        Ok(Some(EyePair { poses, frusta, depth: DepthRange::PAPER, size, dominant }))
+        // An invalid pose counts as unknown, whatever the flags say. The insets have the poses of their eyes.
+        let [Some(left), Some(right)] = eyes.map(|view| to_pose(&view.pose)) else { return Ok(None) };
+        let pair = |views: [&xr::View; 2], size| {
+            let mut frusta = [Frustum { left: 0.0, right: 0.0, bottom: 0.0, top: 0.0 }; 2];
+            for (frustum, view) in frusta.iter_mut().zip(views) {
+                *frustum = to_frustum(&view.fov).ok_or_else(|| {
+                    XrError::Nonsense(format!("gives an eye the field of view {:?}", view.fov))
+                })?;
+            }
+            let (poses, dominant) = ([left, right], settings.dominant);
+            Ok::<_, XrError>(EyePair { poses, frusta, depth: DepthRange::PAPER, size, dominant })
+        };
+        let wide = pair(eyes, sizes[0])?;
+        let inset = insets.map(|insets| pair(insets, sizes[1])).transpose()?;
+        Ok(Some(EyeLevels { shown: wide, wide, inset }))
     }
 
-    /// Returns eyes that the viewer's method can use, close to those of the runtime.
-    pub(super) fn align(&mut self, viewer: &Viewer, native: EyePair) -> EyePair {
-        let reason = stereo::unfit(viewer.method().first(), &native);
-        let aligned = match reason {
-            None => None,
-            Some(EyesError::Density { .. } | EyesError::Rows { .. }) => Some(native.row_aligned()),
-            Some(EyesError::Canted { .. } | EyesError::OffAxis { .. }) => native.rectified(),
-            Some(_) => None,
+    /// Returns eyes that the viewer's method can use, close to those of the runtime. An inset keeps the poses of its eye.
+    pub(super) fn align(&mut self, viewer: &Viewer, native: EyeLevels) -> EyeLevels {
+        let reason = native.pairs().find_map(|pair| stereo::unfit(viewer.method().first(), pair));
+        let aligned = |pair: &EyePair| match reason {
+            Some(EyesError::Density { .. } | EyesError::Rows { .. }) => Some(pair.row_aligned()),
+            Some(EyesError::Canted { .. } | EyesError::OffAxis { .. }) => pair.rectified(),
+            _ => None,
         };
-        let growth = |eyes: &EyePair| {
-            let of =
-                |eye: usize, size: fn(&Frustum) -> f32| size(&eyes.frusta[eye]) / size(&native.frusta[eye]);
-            [of(0, Frustum::width), of(1, Frustum::width), of(0, Frustum::height), of(1, Frustum::height)]
-                .into_iter()
-                .fold(1.0, f32::max)
+        let is_good = |eyes: &EyePair, native: &EyePair| {
+            growth(eyes, native) <= MOST_GROWTH && eyes.synthesis_views(GuardBand::None).is_ok()
         };
-        let aligned = aligned
-            .filter(|eyes| growth(eyes) <= MOST_GROWTH && eyes.synthesis_views(GuardBand::None).is_ok());
+        // All levels or none: those of an eye have one pose.
+        let wide = aligned(&native.wide).filter(|eyes| is_good(eyes, &native.wide));
+        let aligned = wide.and_then(|wide| {
+            let Some(own) = &native.inset else { return Some(EyeLevels::from(&wide)) };
+            let inset = aligned(own).filter(|eyes| is_good(eyes, own))?;
+            Some(EyeLevels { shown: wide, wide, inset: Some(inset) })
+        });
         let kind = std::mem::discriminant::<EyesError>;
         if reason.as_ref().map(kind) != self.realigned.as_ref().map(kind) {
             if let (Some(eyes), Some(reason)) = (&aligned, &reason) {
-                let more = (growth(eyes) - 1.0) * 100.0;
+                let more = (growth(&eyes.wide, &native.wide) - 1.0) * 100.0;
                 log::info!(
                     "{}: both eyes are rendered parallel and alike, in frusta up to {more:.0} % wider, and the compositor turns them back",
                     match reason {
@@ -84,6 +94,14 @@ impl Session {
         }
         aligned.unwrap_or(native)
     }
+}
+
+/// Returns the largest factor by which a side of an eye's frustum has grown.
+fn growth(eyes: &EyePair, native: &EyePair) -> f32 {
+    let of = |eye: usize, size: fn(&Frustum) -> f32| size(&eyes.frusta[eye]) / size(&native.frusta[eye]);
+    [of(0, Frustum::width), of(1, Frustum::width), of(0, Frustum::height), of(1, Frustum::height)]
+        .into_iter()
+        .fold(1.0, f32::max)
 }
 
 /// Converts a pose of OpenXR; `None` if its numbers are not a pose. The specification allows a runtime to deviate from

@@ -1,24 +1,59 @@
 //! One frame: both eyes and the HUD in the runtime's images, and the layers that show them.
 
+use std::ffi::c_void;
+
+use glam::Vec3;
 use openxr as xr;
 use xr::sys;
 
 use super::eyes::{from_frustum, from_pose};
-use super::state::{PanelImages, Session};
+use super::state::{PanelImages, RuntimeLevel, Session};
 use crate::event::Action;
 use crate::openxr::description::Capture;
 use crate::openxr::error::{XrError, check};
+use crate::openxr::images::EyeImages;
+use crate::openxr::motion::{MotionInfo, ends};
 use crate::viewer::Viewer;
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Pose};
+use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_context::Graphics;
 use yoro_lenses::{Board, board_metres};
-use yoro_render::stereo::{DepthTarget, EyeTarget};
+use yoro_render::DepthCopy;
+use yoro_render::stereo::{DepthTarget, EyeLevels, EyeTarget, LevelFrame, LevelTargets};
 use yoro_settings::Ipd;
+
+/// Both eyes and their insets.
+const MOST_VIEWS: usize = 4;
 
 /// The layers of a frame.
 pub(super) struct Layers {
-    pub eyes: Option<EyePair>,
+    /// The eyes as they are submitted.
+    pub eyes: Option<Submitted>,
     pub panel: Option<sys::CompositionLayerQuad>,
+}
+
+/// The eyes as they are submitted, with insets if the runtime shows insets.
+pub(super) struct Submitted {
+    pub levels: EyeLevels,
+    pub drawn: Drawn,
+}
+
+/// What the runtime gets beside colour.
+#[derive(Clone, Copy)]
+pub(super) struct Drawn {
+    /// The size in pixels of the wide eyes' depth: that of their images, or that of the level of which this program has
+    /// composed them with an inset. `None` if it is not of the submitted frusta.
+    pub depth_size: Option<[u32; 2]>,
+    /// True if the runtime gets motion vectors.
+    pub has_motion: bool,
+}
+
+/// The eyes of a frame in the scene.
+struct InScene {
+    levels: EyeLevels,
+    /// The axes of the runtime's own eyes.
+    axes: [Vec3; 2],
+    /// The place of the user's straight ahead.
+    place: Pose,
 }
 
 impl Session {
@@ -32,11 +67,12 @@ impl Session {
         captured: &mut Option<Capture>,
     ) -> Result<Layers, XrError> {
         let nothing = Layers { eyes: None, panel: None };
-        let size = self.frame_size(viewer);
-        let Some(native) = self.locate(viewer.settings(), time, size)? else { return Ok(nothing) };
-        viewer.set_native_ipd(Ipd::nearest((native.poses[1].position - native.poses[0].position).length()));
+        let wide = frame_size(viewer, &self.wide);
+        let sizes = [wide, self.inset.as_ref().map_or(wide, |inset| frame_size(viewer, inset))];
+        let Some(native) = self.locate(viewer.settings(), time, sizes)? else { return Ok(nothing) };
+        viewer.set_native_ipd(Ipd::nearest(native.shown.ipd()));
         let shown = self.align(viewer, native);
-        let head = Pose { position: shown.middle(), orientation: shown.poses[0].orientation };
+        let head = Pose { position: shown.wide.middle(), orientation: shown.wide.poses[0].orientation };
         let rays = match &self.input {
             Some(input) if viewer.is_menu_open() => input.rays(&self.spaces.ahead, time)?,
             _ => [None; 2],
@@ -46,63 +82,104 @@ impl Session {
             log::info!("{action}");
             self.recenter |= action == Action::Recenter;
         }
-        let mut pair = shown;
-        if let Some(ipd) = viewer.chosen_ipd() {
-            let middle = pair.middle();
-            let axis = (pair.poses[1].position - pair.poses[0].position)
-                .try_normalize()
-                .unwrap_or(pair.poses[0].right());
-            for eye in Eye::BOTH {
-                pair.poses[eye.index()].position = middle + axis * (eye.side() * ipd.metres() / 2.0);
-            }
-        }
-        pair.poses = pair.poses.map(|pose| viewer.place(pose));
+        let poses = poses_in_scene(viewer, &shown.wide);
+        let placed = |pair: EyePair| EyePair { poses, ..pair };
+        let levels = EyeLevels {
+            shown: placed(shown.shown),
+            wide: placed(shown.wide),
+            inset: shown.inset.map(placed),
+        };
+        let axes = native.wide.poses.map(|pose| viewer.place(pose).forward());
+        let eyes = InScene { levels, axes, place: viewer.place(Pose::IDENTITY) };
 
-        self.eyes.acquire(graphics)?;
-        if let Some(depth) = &mut self.depth {
-            depth.images.acquire(graphics)?;
-        }
+        self.wide.acquire(graphics)?;
+        self.inset.as_mut().map_or(Ok(()), |inset| inset.acquire(graphics))?;
+        let leaves_frames = viewer.leaves_frames_to_runtime();
+        let motion = self.motion.as_mut().filter(|_| leaves_frames);
+        motion.map_or(Ok(()), |motion| motion.acquire(graphics))?;
         let no_image = || XrError::Nonsense("has no image to draw into".into());
-        let images = self.eyes.targets(size).ok_or_else(no_image)?;
-        let rendered = self.render_eyes(viewer, &pair, images)?;
-        if capture && rendered {
-            let eyes = images.map(|image| self.gl.read_rgba8(&image.color));
-            *captured = Some(Capture { eyes, pair });
+        let targets =
+            |level: &RuntimeLevel, pair: &EyePair| level.eyes.targets(pair.size).ok_or_else(no_image);
+        let images = LevelTargets {
+            wide: targets(&self.wide, &levels.wide)?,
+            inset: self
+                .inset
+                .as_ref()
+                .zip(levels.inset)
+                .map(|(own, pair)| targets(own, &pair))
+                .transpose()?,
+        };
+        let rendered = self.render_eyes(viewer, &eyes, &images)?;
+        if capture && rendered.is_some() {
+            let eyes = images.wide.map(|image| self.gl.read_rgba8(&image.color));
+            *captured = Some(Capture { eyes, pair: levels.wide });
         }
-        self.eyes.release(graphics)?;
-        if let Some(depth) = &mut self.depth {
-            depth.images.release(graphics)?;
-        }
-        if !rendered {
-            return Ok(nothing);
-        }
+        self.wide.release(graphics)?;
+        self.inset.as_mut().map_or(Ok(()), |inset| inset.release(graphics))?;
+        self.motion.as_mut().map_or(Ok(()), |motion| motion.release(graphics))?;
+        let Some(drawn) = rendered else { return Ok(nothing) };
         let panel = self.render_panel(graphics, viewer)?;
-        Ok(Layers { eyes: Some(shown), panel })
+        Ok(Layers { eyes: Some(Submitted { levels: shown, drawn }), panel })
     }
 
-    /// Renders both eyes into images; returns false if the viewer cannot.
+    /// Renders both eyes into images; `None` if the viewer cannot.
     fn render_eyes(
         &mut self,
         viewer: &mut Viewer,
-        pair: &EyePair,
-        images: [EyeTarget<'static>; 2],
-    ) -> Result<bool, XrError> {
-        let eyes = self.storage.begin(images)?;
-        let depth = self.depth.as_ref().and_then(|depth| {
-            Some(depth.images.destinations(pair.size)?.map(|to| DepthTarget { to, copy: &depth.copy }))
-        });
-        let targets = Eye::BOTH
-            .map(|eye| EyeTarget { depth: depth.map(|depth| depth[eye.index()]), ..eyes[eye.index()] });
-        let rendered = viewer.render_eyes(pair, &targets);
+        InScene { levels, axes, place }: &InScene,
+        images: &LevelTargets<'static>,
+    ) -> Result<Option<Drawn>, XrError> {
+        let eyes = self.storage.begin(*images)?;
+        // A runtime that shows insets composes them itself. Of one view, an API layer may need colour and depth of one size.
+        let is_stereo = self.views == xr::ViewConfigurationType::PRIMARY_STEREO;
+        let own = if is_stereo { viewer.levels(&levels.wide, *axes) } else { None };
+        let motion = self.motion.as_ref().filter(|_| viewer.leaves_frames_to_runtime());
+        let copy = self.depth_copy.as_ref();
+        let (mut depth_size, mut has_motion) = (None, false);
+        let mut whole = |eyes, size| {
+            let eyes = self.wide.with_depth(copy, eyes, size);
+            let eyes = motion.map_or(Ok(eyes), |motion| motion.targets(&self.gl, eyes, *place))?;
+            (depth_size, has_motion) = (Some(size), eyes[0].motion.is_some());
+            Ok::<_, XrError>(eyes)
+        };
+        let rendered = match own {
+            Some(own) => {
+                let frame = match &mut self.composed {
+                    Some(frame) => frame,
+                    slot => slot.insert(LevelFrame::new(&self.gl, false)?),
+                };
+                let mut to = frame.fit(&own)?;
+                if own.wide.eyes.frusta == levels.wide.frusta {
+                    to.wide = whole(to.wide, own.wide.eyes.size)?;
+                }
+                let rendered = viewer.render_levels(&(&own).into(), &to);
+                frame.compose(&eyes.wide.map(|eye| eye.color));
+                rendered
+            }
+            None => {
+                self.composed = None;
+                let inset = self.inset.as_ref().zip(eyes.inset).zip(levels.inset);
+                let to = LevelTargets {
+                    wide: whole(eyes.wide, levels.wide.size)?,
+                    inset: inset.map(|((level, eyes), pair)| level.with_depth(copy, eyes, pair.size)),
+                };
+                viewer.render_levels(levels, &to)
+            }
+        };
+        has_motion &= viewer.has_motion();
+        let is_former = motion.is_some() && rendered.is_ok();
+        if let Some(motion) = &mut self.motion {
+            motion.remember(is_former.then_some((levels.wide, *place)));
+        }
         if let Some(mask) = &self.mask
             && self.realigned.is_none()
         {
-            mask.draw(&pair.frusta, &eyes.map(|eye| eye.color));
+            mask.draw(&levels.wide.frusta, &eyes.wide.map(|eye| eye.color));
         }
-        self.storage.end(images.map(|image| image.color));
+        self.storage.end(images);
         // The runtime may read the images on another queue. SAFETY: `flush` has no arguments.
         unsafe { glow::HasContext::flush(self.gl.raw()) };
-        Ok(self.told(rendered).is_some())
+        Ok(self.told(rendered).map(|()| Drawn { depth_size, has_motion }))
     }
 
     /// Updates the image of the menu or the HUD, if one of them is to be shown.
@@ -161,51 +238,52 @@ impl Session {
         Ok(Some(quad(&self.spaces.head, images.sub_image(0, panel.size()), pose, metres)))
     }
 
-    /// Returns the size in pixels of each eye in this frame, at most that of the images.
-    fn frame_size(&self, viewer: &Viewer) -> [u32; 2] {
-        let wanted = viewer.eye_size(self.description.recommended.map(|n| n as f32));
-        [0, 1].map(|i| wanted[i].min(self.description.size[i]))
-    }
-
     /// Calls xrEndFrame.
     pub(super) fn end_frame(&mut self, time: xr::Time, layers: &Layers) -> Result<(), XrError> {
         let eyes = layers.eyes.as_ref();
-        let depth_info = |eye: Eye| {
-            let (depth, eyes) = (self.depth.as_ref()?, eyes?);
-            let DepthRange { near, far, convention } = eyes.depth;
-            let [near_z, far_z] = match convention {
-                DepthConvention::Standard => [near, far],
-                DepthConvention::Reversed => [far, near],
-            };
-            Some(sys::CompositionLayerDepthInfoKHR {
-                ty: sys::CompositionLayerDepthInfoKHR::TYPE,
-                next: std::ptr::null(),
-                sub_image: depth.images.sub_image(eye, eyes.size),
-                min_depth: 0.0,
-                max_depth: 1.0,
-                near_z,
-                far_z,
-            })
+        let wide = eyes.map(|eyes| (&self.wide, &eyes.levels.wide, eyes.drawn.depth_size));
+        let inset = eyes.and_then(|eyes| Some((self.inset.as_ref()?, eyes.levels.inset.as_ref()?)));
+        let inset = inset.map(|(level, pair)| (level, pair, Some(pair.size)));
+        let submitted = || {
+            let levels = [wide, inset].into_iter().flatten();
+            levels.flat_map(|level| Eye::BOTH.map(|eye| (eye, level)))
         };
-        let depths = Eye::BOTH.map(depth_info);
-        let views = eyes.map(|eyes| {
-            Eye::BOTH.map(|eye| sys::CompositionLayerProjectionView {
-                ty: sys::CompositionLayerProjectionView::TYPE,
-                next: depths[eye.index()]
-                    .as_ref()
-                    .map_or(std::ptr::null(), |info| std::ptr::from_ref(info).cast()),
-                pose: from_pose(&eyes.poses[eye.index()]),
-                fov: from_frustum(&eyes.frusta[eye.index()]),
-                sub_image: self.eyes.sub_image(eye, eyes.size),
-            })
-        });
-        let count = if self.views == xr::ViewConfigurationType::PRIMARY_STEREO { 2 } else { 1 };
-        let projection = views.as_ref().map(|views| sys::CompositionLayerProjection {
+        let moving = eyes.filter(|eyes| eyes.drawn.has_motion).zip(self.motion.as_ref());
+        let motions =
+            Eye::BOTH.map(|eye| moving.map(|(eyes, motion)| motion.info(eye, &eyes.levels.wide.depth)));
+        // The insets, which come after the eyes, have no vectors.
+        let after = |i: usize| {
+            let motion = motions.get(i).and_then(Option::as_ref);
+            motion.map_or(std::ptr::null(), MotionInfo::header)
+        };
+        let mut depths = [None; MOST_VIEWS];
+        for (i, (eye, (level, pair, size))) in submitted().enumerate().take(MOST_VIEWS) {
+            let depth = size.zip(level.depth.as_ref());
+            depths[i] = depth.map(|(size, images)| depth_info(eye, pair, (images, size), after(i)));
+        }
+        let mut views = [sys::CompositionLayerProjectionView {
+            ty: sys::CompositionLayerProjectionView::TYPE,
+            next: std::ptr::null(),
+            pose: xr::Posef::IDENTITY,
+            fov: xr::Fovf::default(),
+            sub_image: self.wide.eyes.sub_image(Eye::Left, [0; 2]),
+        }; MOST_VIEWS];
+        let mut count = 0;
+        for (i, (eye, (level, pair, _))) in submitted().enumerate().take(MOST_VIEWS) {
+            let view = &mut views[i];
+            view.next = depths[i].as_ref().map_or(after(i), |info| std::ptr::from_ref(info).cast());
+            view.pose = from_pose(&pair.poses[eye.index()]);
+            view.fov = from_frustum(&pair.frusta[eye.index()]);
+            view.sub_image = level.eyes.sub_image(eye, pair.size);
+            count += 1;
+        }
+        let is_one = self.views == xr::ViewConfigurationType::PRIMARY_MONO;
+        let projection = eyes.map(|_| sys::CompositionLayerProjection {
             ty: sys::CompositionLayerProjection::TYPE,
             next: std::ptr::null(),
             layer_flags: xr::CompositionLayerFlags::EMPTY,
             space: self.spaces.ahead.as_raw(),
-            view_count: count,
+            view_count: if is_one { 1 } else { count },
             views: views.as_ptr(),
         });
         let mut shown = [std::ptr::null::<sys::CompositionLayerBaseHeader>(); 2];
@@ -230,5 +308,57 @@ impl Session {
         // SAFETY: everything that the structures point to is on this stack or in `self`.
         let result = unsafe { (self.instance.fp().end_frame)(self.session.as_raw(), &info) };
         check("xrEndFrame", result).map(drop)
+    }
+}
+
+/// Returns the size in pixels of each eye of a level in this frame, at most that of the images.
+fn frame_size(viewer: &Viewer, level: &RuntimeLevel) -> [u32; 2] {
+    let wanted = viewer.eye_size(level.recommended.map(|n| n as f32));
+    [0, 1].map(|i| wanted[i].min(level.size[i]))
+}
+
+/// Returns the poses of the eyes in the scene, as far apart as the user has chosen.
+fn poses_in_scene(viewer: &Viewer, eyes: &EyePair) -> [Pose; 2] {
+    let mut poses = eyes.poses;
+    if let Some(ipd) = viewer.chosen_ipd() {
+        let middle = eyes.middle();
+        let axis = (poses[1].position - poses[0].position).try_normalize().unwrap_or(poses[0].right());
+        for eye in Eye::BOTH {
+            poses[eye.index()].position = middle + axis * (eye.side() * ipd.metres() / 2.0);
+        }
+    }
+    poses.map(|pose| viewer.place(pose))
+}
+
+/// Returns the description of an eye's depth, which lies in these images; `next` is chained to it.
+fn depth_info(
+    eye: Eye,
+    pair: &EyePair,
+    (images, size): (&EyeImages, [u32; 2]),
+    next: *const c_void,
+) -> sys::CompositionLayerDepthInfoKHR {
+    let [near_z, far_z] = ends(&pair.depth);
+    sys::CompositionLayerDepthInfoKHR {
+        ty: sys::CompositionLayerDepthInfoKHR::TYPE,
+        next,
+        sub_image: images.sub_image(eye, size),
+        min_depth: 0.0,
+        max_depth: 1.0,
+        near_z,
+        far_z,
+    }
+}
+
+impl RuntimeLevel {
+    /// Returns targets with the depth for the runtime, if it takes any.
+    fn with_depth<'a>(
+        &self,
+        copy: Option<&'a DepthCopy>,
+        eyes: [EyeTarget<'a>; 2],
+        size: [u32; 2],
+    ) -> [EyeTarget<'a>; 2] {
+        let depth = self.depth.as_ref().and_then(|images| images.destinations(size)).zip(copy);
+        let depth = depth.map(|(to, copy)| to.map(|to| DepthTarget { to, copy }));
+        Eye::BOTH.map(|eye| EyeTarget { depth: depth.map(|depth| depth[eye.index()]), ..eyes[eye.index()] })
     }
 }

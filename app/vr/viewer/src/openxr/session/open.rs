@@ -3,10 +3,9 @@
 use std::rc::Rc;
 
 use openxr as xr;
-#[cfg(target_os = "android")]
 use xr::sys;
 
-use super::state::{Depth, PanelImages, Session, Spaces};
+use super::state::{PanelImages, RuntimeLevel, Session, Spaces};
 use crate::openxr::description::{Description, Options};
 #[cfg(target_os = "android")]
 use crate::openxr::error::check;
@@ -15,17 +14,20 @@ use crate::openxr::graphics::{self, make_current};
 use crate::openxr::images::{EyeImages, Images, Kind};
 use crate::openxr::input::Input;
 use crate::openxr::mask::Mask;
+use crate::openxr::motion::{self, MotionImages};
 use crate::openxr::runtime::Runtime;
 use crate::openxr::storage::{self, Storage};
-use yoro::eyes::Eye;
+use yoro::eyes::{Eye, FoveationLevel};
 use yoro_context::Graphics;
 use yoro_gl::Context;
 use yoro_lenses::{Board, Panel};
 use yoro_render::DepthCopy;
-use yoro_settings::Settings;
+use yoro_settings::{FrameRate, Settings};
 
 /// If the eyes' images are scaled, their sizes are multiples of this many pixels.
 const SIZE_STEP: f32 = 16.0;
+/// Two views of each eye, the second of which is an inset of the first (also XR_VARJO_quad_views).
+const QUAD: xr::ViewConfigurationType = xr::ViewConfigurationType::PRIMARY_STEREO_WITH_FOVEATED_INSET;
 
 impl Session {
     /// Starts a session with a runtime.
@@ -39,15 +41,25 @@ impl Session {
         make_current(graphics)?;
         let instance = create_instance(runtime, options)?;
         let properties = call("xrGetInstanceProperties", instance.properties())?;
-        let system = System::of(&instance, settings.one_view)?;
-        let size = system.image_size(settings.render_scale, gl.capabilities().max_texture_size / 2);
+        let foveated = settings.foveation.unwrap_or_default() != FoveationLevel::Off;
+        let system = System::of(&instance, settings.one_view, foveated)?;
+        let limit = gl.capabilities().max_texture_size / 2;
+        let sizes: Vec<LevelSize> =
+            system.levels.iter().map(|level| level.scaled(settings.render_scale, limit)).collect();
 
         graphics::check_version(&instance, system.id, gl.capabilities().version)?;
         let (session, waiter, stream) = graphics::create_session(&instance, system.id, graphics)?;
         #[cfg(target_os = "android")]
         hint_thread(&session)?;
-        let images = FrameImages::new(graphics, gl, &session, size, settings.submit_depth)?;
-        let FrameImages { color, eyes, depth, panel } = images;
+        let images = FrameImages::new(graphics, gl, &session, &sizes, settings.submit_depth)?;
+        let FrameImages { color, wide, inset, depth, panel, formats } = images;
+        let is_stereo = system.views == xr::ViewConfigurationType::PRIMARY_STEREO;
+        let motion = match settings.frame_rate {
+            FrameRate::Half | FrameRate::Auto if is_stereo => {
+                MotionImages::new(graphics, gl, &session, system.id, &formats)?
+            }
+            _ => None,
+        };
         let mask = make_mask(gl, &session, system.views)?;
         let spaces = make_spaces(&session)?;
         let input = optional("controllers are not used", Input::new(&instance, &session))?;
@@ -56,22 +68,32 @@ impl Session {
         let storage = Storage::new(gl, color)?;
         let description = Description {
             runtime: format!("{} {}", properties.runtime_name, properties.runtime_version),
-            views: if system.is_stereo() { "stereo" } else { "mono" }.into(),
+            views: match system.views {
+                QUAD => "quad",
+                xr::ViewConfigurationType::PRIMARY_STEREO => "stereo",
+                _ => "mono",
+            }
+            .into(),
             system: system.name,
-            recommended: system.recommended,
-            size,
+            recommended: wide.recommended,
+            size: wide.size,
+            inset_size: inset.as_ref().map(|inset| inset.size),
             format: storage::format_name(color),
-            array: eyes.is_array(),
+            array: wide.eyes.is_array(),
             direct: storage.is_direct(),
-            depth: depth.as_ref().map(|depth| storage::format_name(depth.format)),
+            depth: depth.as_ref().map(|(format, _)| storage::format_name(*format)),
             mask: mask.as_ref().is_some_and(Mask::hides),
             refresh_rates,
             input: input.is_some(),
+            makes_frames: motion.as_ref().map(MotionImages::extension),
         };
         description.log();
         Ok(Session {
-            eyes,
-            depth,
+            wide,
+            inset,
+            motion,
+            depth_copy: depth.map(|(_, copy)| copy),
+            composed: None,
             panel,
             storage,
             mask,
@@ -122,22 +144,28 @@ fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance,
     enabled.fb_display_refresh_rate = offered.fb_display_refresh_rate;
     enabled.ext_performance_settings = offered.ext_performance_settings;
     enabled.bd_controller_interaction = offered.bd_controller_interaction;
-    let application = xr::ApplicationInfo {
-        application_name: "yoro",
-        application_version: 1,
-        engine_name: "yoro",
-        engine_version: 1,
-        api_version: xr::Version::new(1, 0, 0),
-    };
-    #[cfg(target_os = "android")]
-    let created = match options.android {
-        Some(android) => entry.create_instance(&application, &enabled, &[], &android.platform()),
-        None => entry.create_instance(&application, &enabled, &[], &()),
-    };
-    #[cfg(not(target_os = "android"))]
-    let created = {
+    enabled.varjo_quad_views = offered.varjo_quad_views;
+    motion::enable(&offered, &mut enabled);
+    let create = |minor| {
+        let application = xr::ApplicationInfo {
+            application_name: "yoro",
+            application_version: 1,
+            engine_name: "yoro",
+            engine_version: 1,
+            api_version: xr::Version::new(1, minor, 0),
+        };
+        #[cfg(target_os = "android")]
+        if let Some(android) = options.android {
+            return entry.create_instance(&application, &enabled, &[], &android.platform());
+        }
+        #[cfg(not(target_os = "android"))]
         let _ = options;
         entry.create_instance(&application, &enabled, &[], &())
+    };
+    // Insets for the eyes need either the extension or OpenXR 1.1.
+    let created = match create(u16::from(!offered.varjo_quad_views)) {
+        Err(sys::Result::ERROR_API_VERSION_UNSUPPORTED) => create(0),
+        created => created,
     };
     call("xrCreateInstance", created)
 }
@@ -161,40 +189,72 @@ struct System {
     id: xr::SystemId,
     name: String,
     views: xr::ViewConfigurationType,
-    /// The size in pixels that the runtime recommends for each eye, and the largest possible one.
-    recommended: [u32; 2],
-    largest: [u32; 2],
+    /// The eyes, and their insets if there are any.
+    levels: Vec<Recommended>,
     blend: xr::EnvironmentBlendMode,
 }
 
+/// The size in pixels that a runtime recommends for each eye of a level, and the largest possible one.
+struct Recommended {
+    size: [u32; 2],
+    largest: [u32; 2],
+}
+
+impl Recommended {
+    /// Returns the recommendation that suits all of these views.
+    fn of(views: &[xr::ViewConfigurationView]) -> Result<Recommended, XrError> {
+        let size = views.iter().fold([0, 0], |size, view| {
+            [size[0].max(view.recommended_image_rect_width), size[1].max(view.recommended_image_rect_height)]
+        });
+        let largest = views.iter().fold([u32::MAX; 2], |size, view| {
+            [size[0].min(view.max_image_rect_width), size[1].min(view.max_image_rect_height)]
+        });
+        if size.contains(&0) || largest.contains(&0) {
+            return Err(XrError::Nonsense("recommends images without pixels".into()));
+        }
+        Ok(Recommended { size, largest })
+    }
+
+    /// Returns the size, and the size of the images: scaled, and within a limit in pixels.
+    fn scaled(&self, scale: f32, limit: u32) -> LevelSize {
+        let size = image_size(self.size, scale, self.largest.map(|n| n.min(limit)));
+        LevelSize { recommended: self.size, size }
+    }
+}
+
+/// The size in pixels that the runtime recommends for each eye of a level, and that of the images.
+#[derive(Clone, Copy)]
+struct LevelSize {
+    recommended: [u32; 2],
+    size: [u32; 2],
+}
+
 impl System {
-    /// Asks the runtime for the headset; `one_view` prefers one view to two.
-    fn of(instance: &xr::Instance, one_view: bool) -> Result<System, XrError> {
+    /// Asks the runtime for the headset; `one_view` prefers one view to two, and `foveated` two views with insets.
+    fn of(instance: &xr::Instance, one_view: bool, foveated: bool) -> Result<System, XrError> {
         let id = call("xrGetSystem", instance.system(xr::FormFactor::HEAD_MOUNTED_DISPLAY))?;
         let properties = call("xrGetSystemProperties", instance.system_properties(id))?;
         let configurations =
             call("xrEnumerateViewConfigurations", instance.enumerate_view_configurations(id))?;
-        let mut wanted = [xr::ViewConfigurationType::PRIMARY_STEREO, xr::ViewConfigurationType::PRIMARY_MONO];
-        if one_view {
-            wanted.reverse();
-        }
+        let (stereo, mono) =
+            (xr::ViewConfigurationType::PRIMARY_STEREO, xr::ViewConfigurationType::PRIMARY_MONO);
+        let wanted: &[_] = match (one_view, foveated) {
+            (true, _) => &[mono, stereo],
+            (false, true) => &[QUAD, stereo, mono],
+            (false, false) => &[stereo, mono],
+        };
         let views = wanted
-            .into_iter()
+            .iter()
+            .copied()
             .find(|views| configurations.contains(views))
             .ok_or_else(|| XrError::Nonsense("offers neither one view nor two".into()))?;
         let sizes = call(
             "xrEnumerateViewConfigurationViews",
             instance.enumerate_view_configuration_views(id, views),
         )?;
-        let recommended = sizes.iter().fold([0, 0], |size, view| {
-            [size[0].max(view.recommended_image_rect_width), size[1].max(view.recommended_image_rect_height)]
-        });
-        let largest = sizes.iter().fold([u32::MAX; 2], |size, view| {
-            [size[0].min(view.max_image_rect_width), size[1].min(view.max_image_rect_height)]
-        });
-        if recommended.contains(&0) || largest.contains(&0) {
-            return Err(XrError::Nonsense("recommends images without pixels".into()));
-        }
+        let (eyes, insets) = sizes.split_at_checked(2).unwrap_or((&sizes, &[]));
+        let levels = [eyes, insets].into_iter().take(if views == QUAD { 2 } else { 1 });
+        let levels = levels.map(Recommended::of).collect::<Result<_, _>>()?;
         let blends =
             call("xrEnumerateEnvironmentBlendModes", instance.enumerate_environment_blend_modes(id, views))?;
         let opaque = xr::EnvironmentBlendMode::OPAQUE;
@@ -202,16 +262,7 @@ impl System {
             Some(first) if !blends.contains(&opaque) => *first,
             _ => opaque,
         };
-        Ok(System { id, name: properties.system_name, views, recommended, largest, blend })
-    }
-
-    fn is_stereo(&self) -> bool {
-        self.views == xr::ViewConfigurationType::PRIMARY_STEREO
-    }
-
-    /// Returns the size in pixels of the images: the recommended one, scaled.
-    fn image_size(&self, scale: f32, limit: u32) -> [u32; 2] {
-        image_size(self.recommended, scale, self.largest.map(|n| n.min(limit)))
+        Ok(System { id, name: properties.system_name, views, levels, blend })
     }
 }
 
@@ -219,9 +270,13 @@ impl System {
 struct FrameImages {
     /// Format of the eyes and the panel.
     color: u32,
-    eyes: EyeImages,
-    depth: Option<Depth>,
+    wide: RuntimeLevel,
+    inset: Option<RuntimeLevel>,
+    /// Format of the depth, and the pass that writes it.
+    depth: Option<(u32, DepthCopy)>,
     panel: Option<PanelImages>,
+    /// The formats that the runtime takes.
+    formats: Vec<u32>,
 }
 
 impl FrameImages {
@@ -229,46 +284,61 @@ impl FrameImages {
         graphics: &dyn Graphics,
         gl: &Rc<Context>,
         session: &xr::Session<xr::OpenGlEs>,
-        size: [u32; 2],
+        sizes: &[LevelSize],
         submit_depth: bool,
     ) -> Result<FrameImages, XrError> {
         let formats = call("xrEnumerateSwapchainFormats", session.enumerate_swapchain_formats())?;
         let color = storage::choose(&storage::COLOR_FORMATS, &formats).ok_or_else(|| {
             XrError::Nonsense("offers no format of images that OpenGL ES can draw to".into())
         })?;
-        let kind = Kind { format: color, is_depth: false, size, layers: 2 };
-        let eyes = EyeImages::new(graphics, gl, session, kind)?;
+        let level = |LevelSize { recommended, size }: LevelSize| {
+            let kind = Kind { format: color, is_depth: false, is_sampled: true, size, layers: 2 };
+            let eyes = EyeImages::new(graphics, gl, session, kind)?;
+            Ok::<_, XrError>(RuntimeLevel { eyes, depth: None, recommended, size })
+        };
+        let mut levels = sizes.iter().map(|size| level(*size)).collect::<Result<Vec<_>, _>>()?;
         let depth = match session.instance().exts().khr_composition_layer_depth {
             Some(_) if submit_depth => {
-                let made = make_depth(graphics, gl, session, &formats, size);
+                let made = make_depth(graphics, gl, session, &formats, &mut levels);
                 optional("no depth is submitted", made)?.flatten()
             }
             _ => None,
         };
+        let size = [0, 1].map(|i| Panel::MAX_SIZE[i].max(Board::SIZE[i]));
         let panel = Images::new(
             graphics,
             gl,
             session,
-            Kind { size: [0, 1].map(|i| Panel::MAX_SIZE[i].max(Board::SIZE[i])), layers: 1, ..kind },
+            Kind { format: color, is_depth: false, is_sampled: true, size, layers: 1 },
         );
         let panel = optional("there is no HUD", panel)?.map(|images| PanelImages { images, version: None });
-        Ok(FrameImages { color, eyes, depth, panel })
+        let mut levels = levels.into_iter();
+        let wide = levels.next().ok_or_else(|| XrError::Nonsense("has no views".into()))?;
+        Ok(FrameImages { color, wide, inset: levels.next(), depth, panel, formats })
     }
 }
 
+/// Makes images for the depth of all levels. Returns their format and the pass that writes them.
 fn make_depth(
     graphics: &dyn Graphics,
     gl: &Rc<Context>,
     session: &xr::Session<xr::OpenGlEs>,
     formats: &[u32],
-    size: [u32; 2],
-) -> Result<Option<Depth>, XrError> {
+    levels: &mut [RuntimeLevel],
+) -> Result<Option<(u32, DepthCopy)>, XrError> {
     let Some(format) = storage::choose(&storage::DEPTH_FORMATS, formats) else {
         log::info!("no depth is submitted: the runtime takes none of the formats of OpenGL ES");
         return Ok(None);
     };
-    let images = EyeImages::new(graphics, gl, session, Kind { format, is_depth: true, size, layers: 2 })?;
-    Ok(Some(Depth { images, copy: DepthCopy::new(gl)?, format }))
+    let images = |level: &RuntimeLevel| {
+        let kind = Kind { format, is_depth: true, is_sampled: false, size: level.size, layers: 2 };
+        EyeImages::new(graphics, gl, session, kind)
+    };
+    let (images, copy) = (levels.iter().map(images).collect::<Result<Vec<_>, _>>()?, DepthCopy::new(gl)?);
+    for (level, images) in levels.iter_mut().zip(images) {
+        level.depth = Some(images);
+    }
+    Ok(Some((format, copy)))
 }
 
 /// Returns the mask of the hidden part of each eye's image, if the runtime provides it.
@@ -281,7 +351,7 @@ fn make_mask(
         return Ok(None);
     }
     let mut mask = Mask::new(gl)?;
-    let count = if views == xr::ViewConfigurationType::PRIMARY_STEREO { 2 } else { 1 };
+    let count = if views == xr::ViewConfigurationType::PRIMARY_MONO { 1 } else { 2 };
     for eye in Eye::BOTH.into_iter().take(count) {
         optional("nothing is masked", mask.update(session, views, eye))?;
     }

@@ -11,10 +11,13 @@ use crate::openxr::error::{XrError, call};
 use crate::openxr::images::{EyeImages, Images};
 use crate::openxr::input::Input;
 use crate::openxr::mask::Mask;
+use crate::openxr::motion::MotionImages;
 use crate::openxr::storage::Storage;
 use yoro::eyes::EyesError;
+use yoro_context::Graphics;
 use yoro_gl::Context;
 use yoro_render::DepthCopy;
+use yoro_render::stereo::LevelFrame;
 use yoro_settings::Performance;
 
 /// The result of [`Session::step`].
@@ -31,11 +34,29 @@ pub struct PanelImages {
     pub version: Option<u64>,
 }
 
-/// Depth of both eyes, for the runtime.
-pub struct Depth {
-    pub copy: DepthCopy,
-    pub images: EyeImages,
-    pub format: u32,
+/// The runtime's images of a level of the eyes: of all that they see, or of their insets.
+pub struct RuntimeLevel {
+    pub eyes: EyeImages,
+    /// Depth for the runtime, if it takes any.
+    pub depth: Option<EyeImages>,
+    /// The size in pixels that the runtime recommends for each eye.
+    pub recommended: [u32; 2],
+    /// The size in pixels of the images.
+    pub size: [u32; 2],
+}
+
+impl RuntimeLevel {
+    pub(super) fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
+        self.all().try_for_each(|images| images.acquire(graphics))
+    }
+
+    pub(super) fn release(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
+        self.all().try_for_each(|images| images.release(graphics))
+    }
+
+    fn all(&mut self) -> impl Iterator<Item = &mut EyeImages> {
+        [Some(&mut self.eyes), self.depth.as_mut()].into_iter().flatten()
+    }
 }
 
 /// The spaces that poses are relative to.
@@ -53,8 +74,14 @@ pub struct Spaces {
 pub struct Session {
     pub(super) storage: Storage,
     pub(super) mask: Option<Mask>,
-    pub(super) depth: Option<Depth>,
-    pub(super) eyes: EyeImages,
+    /// Made when the eyes are first composed of levels by this program.
+    pub(super) composed: Option<LevelFrame>,
+    pub(super) depth_copy: Option<DepthCopy>,
+    /// `None` unless the runtime makes frames.
+    pub(super) motion: Option<MotionImages>,
+    pub(super) wide: RuntimeLevel,
+    /// The insets, which the runtime composes with the wide views.
+    pub(super) inset: Option<RuntimeLevel>,
     pub(super) panel: Option<PanelImages>,
     pub(super) input: Option<Input>,
     pub(super) spaces: Spaces,
@@ -81,6 +108,11 @@ pub struct Session {
 impl Session {
     pub fn description(&self) -> &Description {
         &self.description
+    }
+
+    /// True if the runtime can make frames between those that are rendered.
+    pub fn makes_frames(&self) -> bool {
+        self.motion.is_some()
     }
 
     /// True if the runtime wants frames.
@@ -116,6 +148,9 @@ impl Session {
     /// Sets the user's straight ahead, relative to the runtime's.
     pub(super) fn set_space(&mut self, pose: xr::Posef) -> Result<(), XrError> {
         let space = self.session.create_reference_space(xr::ReferenceSpaceType::LOCAL, pose);
+        if let Some(motion) = &mut self.motion {
+            motion.remember(None);
+        }
         self.spaces.ahead = call("xrCreateReferenceSpace", space)?;
         Ok(())
     }
@@ -124,9 +159,11 @@ impl Session {
 impl Drop for Session {
     fn drop(&mut self) {
         // After a swapchain is destroyed, the context may no longer be current, depending on the runtime.
-        self.eyes.close();
-        if let Some(depth) = &mut self.depth {
-            depth.images.close();
+        for level in [Some(&mut self.wide), self.inset.as_mut()].into_iter().flatten() {
+            level.all().for_each(EyeImages::close);
+        }
+        if let Some(motion) = &mut self.motion {
+            motion.close();
         }
         if let Some(panel) = &mut self.panel {
             panel.images.close();
