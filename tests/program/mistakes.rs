@@ -211,11 +211,11 @@ fn options_without_effect_are_refused() {
         ("run prototype --pipeline paper", ["--pipeline has no effect", "--pipelines"]),
         (
             "view --png v.png --set frame-rate=half --set near-field=2",
-            ["near-field has no effect", "frame-rate=half"],
+            ["near-field and frame-rate=half do not go together", "leave one of them out"],
         ),
         (
             "view --png v.png --set frame-rate=half --set pipeline=paper",
-            ["pipeline=paper has no effect", "frame-rate=half"],
+            ["pipeline=paper and frame-rate=half do not go together", "leave one of them out"],
         ),
     ] {
         run(dir.path(), line).refuses(&naming);

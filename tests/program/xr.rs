@@ -835,6 +835,15 @@ fn jumps_are_not_extrapolated() {
         .collect();
     assert_eq!(without.len(), 1, "{without:?}");
 
+    // The other extension has a word for it.
+    let missing_extensions = vec!["XR_EXT_frame_synthesis".to_owned()];
+    let simulated = Simulated::new(&Script { missing_extensions, ..script });
+    simulated.succeed("--frames 10 --set frame-rate=half");
+    let skipped = |(_, views): &(u32, Vec<View>)| views[0].synthesis.as_ref().is_some_and(|s| s.is_skipped);
+    let views = simulated.views();
+    assert!(views.iter().all(|(_, views)| views[0].synthesis.is_some()));
+    assert_eq!(views.iter().filter(|frame| frame.0 > 3 && skipped(frame)).count(), 1, "{views:#?}");
+
     let missing_extensions = ["XR_EXT_frame_synthesis", "XR_FB_space_warp"].map(str::to_owned).into();
     let simulated = Simulated::new(&Script { missing_extensions, ..Script::default() });
     let run = simulated.succeed("--frames 4 --set frame-rate=half --json");

@@ -28,7 +28,12 @@ const QEMU: [&str; 2] = ["usr/bin/qemu-aarch64-static", "usr/bin/qemu-aarch64"];
 pub fn fetch() -> anyhow::Result<PathBuf> {
     let needs = || {
         let rust = Rust::for_target(TRIPLE).map(|(rust, _)| rust);
-        vec![Need::program("clang", &["clang"]), Need::program("ld.lld", &["lld"]), source(rust.as_ref())]
+        vec![
+            Need::program("clang", &["clang"]),
+            Need::program("ld.lld", &["lld"]),
+            Need::program("llvm-strip", &["llvm"]),
+            source(rust.as_ref()),
+        ]
     };
     apt::install_missing(needs, true)?;
     let folder = folder()?;

@@ -582,7 +582,7 @@ fn one_view_through_the_layer_is_what_the_application_synthesizes() {
             Eye { size: [width, height], fov_degrees: view.fov_degrees, ..Eye::default() }
         });
         let own = tempfile::tempdir().unwrap();
-        let settings = [("method", "yoro"), ("dominant", names[dominant])];
+        let settings = [("method", "yoro"), ("dominant", names[dominant]), ("foveation", "off")];
         let device = headset_with(own.path(), Headset { eyes, ..Headset::default() }, &settings, "");
         let Some(run) = play(&format!("layer-none-{dominant}"), &device, IMMERSIVE) else { return };
         let expected = assert_immersive(&run, own.path());

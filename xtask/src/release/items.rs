@@ -80,7 +80,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
     Description {
         parts: ["yoro-openxr-layer", ".aar"],
         title: "the same for Android applications",
-        tested: "the simulated Android host",
+        tested: "another build of it, in the simulated Android host",
         untested: NO_DEVICE,
         same: Same::Compilers,
     },
@@ -145,14 +145,14 @@ pub const DESCRIPTIONS: [Description; 13] = [
         title: "three.js",
         tested: "installed and bundled, pictures against three's own eyes",
         untested: "headsets",
-        same: Same::Anywhere,
+        same: Same::Compilers,
     },
     Description {
         parts: ["", ".crate"],
         title: "Rust, as the registry takes them",
-        tested: "all tests",
+        tested: "all tests, before they are packed",
         untested: "",
-        same: Same::Anywhere,
+        same: Same::Compilers,
     },
 ];
 

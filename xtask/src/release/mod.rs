@@ -12,8 +12,10 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 
+use crate::apt::{self, Need};
 use crate::folders::{copy, copy_folder, remove, root, write};
-use crate::site;
+use crate::rust::{self, Rust};
+use crate::{site, web};
 
 pub use items::Item;
 
@@ -31,6 +33,8 @@ pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
     let out = absolute(out).context("the current folder is gone: change to another")?;
     fs::create_dir_all(&out).with_context(|| format!("{} cannot be made", out.display()))?;
     let items: Vec<Item> = if only.is_empty() { Item::ALL.to_vec() } else { in_order(only) };
+    apt::install_missing(needs, true)?;
+    let commit = commit()?;
     let mut times = Vec::new();
     for item in items.iter().filter(|item| **item != Item::Site) {
         let begin = Instant::now();
@@ -44,7 +48,6 @@ pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
         }
         times.push((item.name(), begin.elapsed()));
     }
-    let commit = commit()?;
     if !files(&out)?.is_empty() {
         write_sums(&out)?;
         write(&out.join(SUMMARY), summary::text(&out, &commit)?)?;
@@ -64,6 +67,16 @@ pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
     }
     println!("{} in {} s", out.display(), start.elapsed().as_secs());
     Ok(())
+}
+
+/// Returns what all items need beside a compiler.
+fn needs() -> Vec<Need> {
+    let rust = Rust::for_target(web::TRIPLE).map(|(rust, _)| rust);
+    vec![
+        Need::program("xz", &["xz-utils"]),
+        Need::program("strip", &["binutils"]),
+        rust::source(rust.as_ref()),
+    ]
 }
 
 /// Returns the items without duplicates, in the order in which they have to be made.

@@ -32,14 +32,16 @@ pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
     for path in super::files(out)? {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let size = fs::metadata(&path).with_context(|| format!("{} cannot be read", path.display()))?.len();
-        let Some(description) = Description::of(&name) else { continue };
+        let description = Description::of(&name)
+            .with_context(|| format!("{} is no file of a release: take it away", path.display()))?;
         let Description { title, tested, untested, same, .. } = description;
         // Writing to a string cannot fail.
         let _ = writeln!(text, "| `{name}` | {size} | {title} | {tested} | {untested} | {} |", again(*same));
     }
     text.push_str(
-        "\n\"Same bytes again\": whether the same commit gives the same file. With *the same compilers*: rustc, and clang or gcc,\n\
-         of the same versions. A key signs APKs; another key gives other bytes.\n",
+        "\n\"Same bytes again\": whether the same commit gives the same file. With *the same compilers*: rustc, cargo, npm, and\n\
+         clang or gcc, of the same versions. A key signs APKs (`CARGO_APK_RELEASE_KEYSTORE`); without one it is a new key\n\
+         for debugging, which no store accepts.\n",
     );
     Ok(text)
 }
@@ -59,7 +61,7 @@ mod tests {
     #[test]
     fn a_row_for_each_file() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["yoro-0.1.0.apk", "yoro-0.1.0.crate", SUMS, "unknown"] {
+        for name in ["yoro-0.1.0.apk", "yoro-0.1.0.crate", SUMS] {
             fs::write(folder.path().join(name), "four").unwrap();
         }
         let text = text(folder.path(), "abc").unwrap();
@@ -68,5 +70,7 @@ mod tests {
             "{text}"
         );
         assert_eq!(text.matches("\n| `").count(), 2, "{text}");
+        fs::write(folder.path().join("unknown"), "four").unwrap();
+        assert!(super::text(folder.path(), "abc").is_err());
     }
 }

@@ -22,7 +22,8 @@ pub use npm::{check_types, emulator, npm, three as three_modules};
 pub use serve::serve;
 pub use site::publish;
 
-const TRIPLE: &str = "wasm32-unknown-unknown";
+/// Rust's name for the target.
+pub const TRIPLE: &str = "wasm32-unknown-unknown";
 /// The example of yoro-wgpu.
 const EXAMPLE: &str = "offscreen";
 /// Maximum number of bytes transferred by a first visit, since phones load the page over mobile networks.

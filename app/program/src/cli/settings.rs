@@ -312,11 +312,14 @@ impl SettingsArgs {
         let hud = self.no_hud.then(|| "hud=false".to_owned());
         let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
         let settings = defaults.changed(self.settings.as_deref(), overrides)?;
-        if settings.frame_rate == FrameRate::Half {
+        if settings.frame_rate != FrameRate::Full {
             let near_field = settings.near_field.is_some().then_some("near-field");
             let paper = (settings.pipeline == Pipeline::Paper).then_some("pipeline=paper");
             if let Some(other) = near_field.or(paper) {
-                bail!("{other} has no effect with frame-rate=half: leave one of them out");
+                bail!(
+                    "{other} and frame-rate={} do not go together: leave one of them out",
+                    settings.frame_rate.name()
+                );
             }
         }
         Ok(settings)

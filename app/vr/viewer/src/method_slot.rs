@@ -8,6 +8,7 @@ use crate::options::{render_settings, stereo_options};
 use crate::rate::RateChooser;
 use crate::scene_slot::Shown;
 use yoro::choice::Cost;
+use yoro::eyes::Foveation;
 use yoro_gl::{Context, GlError};
 use yoro_render::stereo::{
     Auto, EyeLevels, GuardBandUse, ImBufferSize, LevelTargets, Method, MethodChoice, Pipeline,
@@ -39,6 +40,8 @@ pub(crate) struct MethodSlot {
     was_shown_again: bool,
     /// True if the display's runtime makes the frames between those that are rendered.
     runtime_makes_frames: bool,
+    /// True if the display's runtime shows insets, whatever the settings say since its session began.
+    runtime_shows_insets: bool,
     rate: RateChooser,
 }
 
@@ -59,6 +62,7 @@ impl MethodSlot {
             step_ns: None,
             was_shown_again: false,
             runtime_makes_frames: false,
+            runtime_shows_insets: false,
             rate: RateChooser::default(),
         }
     }
@@ -137,6 +141,9 @@ impl MethodSlot {
     fn options(&self, settings: &Settings) -> StereoOptions {
         let mut options = stereo_options(settings, self.pipeline);
         options.half_rate &= !self.runtime_makes_frames;
+        if self.runtime_shows_insets {
+            options.inset = options.inset.or(Some(Foveation::MEDIUM.nearest));
+        }
         let (imbuffer, divisor) = (&mut options.synthesis.paper.imbuffer, self.quality.imbuffer);
         *imbuffer = match *imbuffer {
             ImBufferSize::Divisor(n) => ImBufferSize::Divisor(n * divisor),
@@ -230,10 +237,12 @@ impl MethodSlot {
         std::mem::replace(&mut self.is_comparing, is_comparing) != is_comparing
     }
 
-    /// Says whether the display's runtime makes the frames between those that are rendered. Returns true if this is a
-    /// change, after which the method must be made again.
-    pub fn let_runtime_make_frames(&mut self, makes: bool) -> bool {
-        std::mem::replace(&mut self.runtime_makes_frames, makes) != makes
+    /// Says what the display's runtime does: whether it makes the frames between those that are rendered, and whether it
+    /// shows insets. Returns true if this is a change, after which the method must be made again.
+    pub fn share_with_runtime(&mut self, makes_frames: bool, shows_insets: bool) -> bool {
+        let before = (self.runtime_makes_frames, self.runtime_shows_insets);
+        (self.runtime_makes_frames, self.runtime_shows_insets) = (makes_frames, shows_insets);
+        before != (makes_frames, shows_insets)
     }
 
     /// True if the display's runtime is to make every second frame.
@@ -343,11 +352,11 @@ impl MethodSlot {
         }
     }
 
-    /// Takes a frame into account for `frame-rate=auto`.
-    pub fn judge_rate(&mut self, load: &Load, settings: &Settings) {
+    /// Takes a frame into account for `frame-rate=auto`. `display_hz` is the rate at which the display refreshes.
+    pub fn judge_rate(&mut self, load: &Load, display_hz: f32, settings: &Settings) {
         if settings.frame_rate == FrameRate::Auto
             && self.runtime_makes_frames
-            && self.rate.frame(load, load.refresh_hz)
+            && self.rate.frame(load, display_hz)
         {
             let which = if self.rate.is_half() { "every second frame" } else { "every frame" };
             log::info!("frame-rate: {which} is rendered");

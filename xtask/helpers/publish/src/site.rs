@@ -16,7 +16,7 @@ const PLACE: &str = "<!-- SITE -->";
 /// The folder of the files of a release in the site.
 const DOWNLOADS: &str = "downloads";
 const NO_FILES: &str = "# Downloads\n\nThis copy of the site was made without the files of a release. `cargo xtask release` \
-                        makes them: [what to build for whom](guides/index.html#to-be-had-without-being-built).\n";
+                        makes them: [what to build for whom](guides/index.html#downloads).\n";
 
 /// Completes a folder that has the page and rustdoc. `release` is a folder with the files of a release.
 ///

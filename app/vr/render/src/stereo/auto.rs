@@ -196,8 +196,12 @@ impl StereoMethod for SelectedMethod {
     }
 
     fn report(&self) -> MethodReport {
+        let both = || self.both.as_ref().map(LevelMethods::report).unwrap_or_default();
         if let Some(reason) = &self.unfit {
-            return MethodReport { substituted: Some(Substituted::Eyes(*reason)), ..MethodReport::default() };
+            return MethodReport { substituted: Some(Substituted::Eyes(*reason)), ..both() };
+        }
+        if self.is_comparing {
+            return both();
         }
         match &self.kind {
             Kind::Named(methods) => methods.report(),

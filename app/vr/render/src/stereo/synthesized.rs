@@ -205,7 +205,8 @@ impl Synthesized {
         let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
         renderer.develop(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
         over.finish(frame, dominant, &surfaces);
-        if frame.to(other).motion.is_some() {
+        // The source lacks what is near, and its vectors.
+        if frame.to(other).motion.is_some() && self.options.near_field.is_none() {
             let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
             let motion = match &mut self.motion {
                 Some(motion) => motion,

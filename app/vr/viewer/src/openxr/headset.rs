@@ -108,10 +108,11 @@ impl Headset {
         Ok(headset)
     }
 
-    /// Tells the viewer whether the runtime makes frames.
+    /// Tells the viewer what the runtime does.
     fn share_frames(&mut self) -> Result<(), XrError> {
         let makes_frames = self.session.as_ref().is_some_and(Session::makes_frames);
-        let shared = self.viewer.let_runtime_make_frames(makes_frames);
+        let shows_insets = self.session.as_ref().is_some_and(Session::shows_insets);
+        let shared = self.viewer.share_with_runtime(makes_frames, shows_insets);
         shared.map_err(|error| XrError::Context(error.to_string()))
     }
 

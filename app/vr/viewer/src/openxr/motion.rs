@@ -142,8 +142,13 @@ impl MotionImages {
         self.former = frame.map(|(eyes, place)| Former { eyes, place });
     }
 
-    /// Returns the structure for an eye's vectors, whose depth is of this range.
-    pub fn info(&self, eye: Eye, range: &DepthRange) -> MotionInfo {
+    /// Returns the structure for an eye's vectors, whose depth is of this range. If this frame has no vectors, the structure
+    /// says that no frame is to be made of it; XR_EXT_frame_synthesis says so by having none.
+    pub fn info(&self, eye: Eye, range: &DepthRange, has_motion: bool) -> Option<MotionInfo> {
+        use sys::CompositionLayerSpaceWarpInfoFlagsFB as SpaceWarpFlags;
+        if !has_motion && self.extension == Extension::FrameSynthesis {
+            return None;
+        }
         let [near_z, far_z] = ends(range);
         let motion_vector_sub_image = self.vectors.sub_image(eye, self.size);
         let depth_sub_image = self.depth.sub_image(eye, self.size);
@@ -151,7 +156,7 @@ impl MotionImages {
         let app_space_delta_pose = xr::Posef::IDENTITY;
         let next = std::ptr::null();
         let (min_depth, max_depth) = (0.0, 1.0);
-        match self.extension {
+        Some(match self.extension {
             Extension::FrameSynthesis => MotionInfo::FrameSynthesis(sys::FrameSynthesisInfoEXT {
                 ty: sys::FrameSynthesisInfoEXT::TYPE,
                 next,
@@ -169,7 +174,7 @@ impl MotionImages {
             Extension::SpaceWarp => MotionInfo::SpaceWarp(sys::CompositionLayerSpaceWarpInfoFB {
                 ty: sys::CompositionLayerSpaceWarpInfoFB::TYPE,
                 next,
-                layer_flags: sys::CompositionLayerSpaceWarpInfoFlagsFB::EMPTY,
+                layer_flags: if has_motion { SpaceWarpFlags::EMPTY } else { SpaceWarpFlags::FRAME_SKIP },
                 motion_vector_sub_image,
                 app_space_delta_pose,
                 depth_sub_image,
@@ -178,7 +183,7 @@ impl MotionImages {
                 near_z,
                 far_z,
             }),
-        }
+        })
     }
 
     /// Deletes the framebuffers, after which nothing can be drawn.

@@ -81,13 +81,13 @@ impl Viewer {
         Ok(())
     }
 
-    /// Says whether the display's runtime makes the frames between those that are rendered, of colour, depth and motion
-    /// vectors. Otherwise the viewer makes them with `frame-rate=half`.
+    /// Says what the display's runtime does: whether it makes the frames between those that are rendered, of colour, depth
+    /// and motion vectors (otherwise the viewer makes them with `frame-rate=half`), and whether it shows insets.
     ///
     /// # Errors
     /// [`ViewerError::Gl`] if the method cannot be compiled for this.
-    pub fn let_runtime_make_frames(&mut self, makes: bool) -> Result<(), ViewerError> {
-        if self.method.let_runtime_make_frames(makes) {
+    pub fn share_with_runtime(&mut self, makes_frames: bool, shows_insets: bool) -> Result<(), ViewerError> {
+        if self.method.share_with_runtime(makes_frames, shows_insets) {
             self.make_method()?;
         }
         Ok(())
@@ -152,8 +152,15 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::NoContext`], and [`ViewerError::Gl`] if a method cannot be recompiled for another quality.
     pub fn end(&mut self, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
-        let &FrameTiming { now_ns, refresh_hz, .. } = timing;
+        let &FrameTiming { now_ns, mut refresh_hz, .. } = timing;
         self.now_ns = now_ns;
+        // While a runtime makes every second frame, it may give the period of the display or that of the renders.
+        if self.leaves_frames_to_runtime() {
+            self.display_hz = self.display_hz.max(refresh_hz);
+            refresh_hz = self.display_hz / 2.0;
+        } else {
+            self.display_hz = refresh_hz;
+        }
         let Attached { gl, pass_times, .. } = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
         pass_times.clear();
         let timed = gl.end_timed_frame(pass_times);
@@ -166,8 +173,11 @@ impl Viewer {
         let scene = self.scene_state();
         self.method.end_frame(now_ns, refresh_hz, gpu);
         let load = Load { now_ns, refresh_hz, late_refreshes, gpu_ms };
-        self.method.judge_rate(&load, &self.settings);
-        if self.settings.adaptive && scene == SceneState::Ready && self.method.adapt(&load, &self.settings) {
+        let is_shown = scene == SceneState::Ready;
+        if is_shown {
+            self.method.judge_rate(&load, self.display_hz, &self.settings);
+        }
+        if self.settings.adaptive && is_shown && self.method.adapt(&load, &self.settings) {
             self.make_method()?;
         }
         let was_over = self.stats.is_over();

@@ -75,6 +75,8 @@ pub struct Viewer {
     attached: Option<Attached>,
     now_ns: i64,
     refresh_hz: f32,
+    /// The display's refreshes per second, as far as it is known while its runtime makes every second frame.
+    display_hz: f32,
     menu: Menu,
     /// The settings from the last call of `new` or `configure`, without the menu's changes.
     given: Settings,
@@ -106,6 +108,7 @@ impl Viewer {
             attached: None,
             now_ns: 0,
             refresh_hz: 0.0,
+            display_hz: 0.0,
             menu: Menu::default(),
             given: settings.clone(),
             wanted: None,

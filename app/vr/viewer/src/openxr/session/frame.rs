@@ -43,7 +43,9 @@ pub(super) struct Drawn {
     /// The size in pixels of the wide eyes' depth: that of their images, or that of the level of which this program has
     /// composed them with an inset. `None` if it is not of the submitted frusta.
     pub depth_size: Option<[u32; 2]>,
-    /// True if the runtime gets motion vectors.
+    /// True if the runtime is to make the next frame.
+    pub leaves_frame: bool,
+    /// True if it gets motion vectors for it.
     pub has_motion: bool,
 }
 
@@ -149,7 +151,7 @@ impl Session {
                     slot => slot.insert(LevelFrame::new(&self.gl, false)?),
                 };
                 let mut to = frame.fit(&own)?;
-                if own.wide.eyes.frusta == levels.wide.frusta {
+                if is_alike(&own.wide.eyes, &levels.wide) {
                     to.wide = whole(to.wide, own.wide.eyes.size)?;
                 }
                 let rendered = viewer.render_levels(&(&own).into(), &to);
@@ -167,7 +169,8 @@ impl Session {
             }
         };
         has_motion &= viewer.has_motion();
-        let is_former = motion.is_some() && rendered.is_ok();
+        let leaves_frame = motion.is_some();
+        let is_former = leaves_frame && rendered.is_ok();
         if let Some(motion) = &mut self.motion {
             motion.remember(is_former.then_some((levels.wide, *place)));
         }
@@ -179,7 +182,7 @@ impl Session {
         self.storage.end(images);
         // The runtime may read the images on another queue. SAFETY: `flush` has no arguments.
         unsafe { glow::HasContext::flush(self.gl.raw()) };
-        Ok(self.told(rendered).map(|()| Drawn { depth_size, has_motion }))
+        Ok(self.told(rendered).map(|()| Drawn { depth_size, leaves_frame, has_motion }))
     }
 
     /// Updates the image of the menu or the HUD, if one of them is to be shown.
@@ -248,9 +251,11 @@ impl Session {
             let levels = [wide, inset].into_iter().flatten();
             levels.flat_map(|level| Eye::BOTH.map(|eye| (eye, level)))
         };
-        let moving = eyes.filter(|eyes| eyes.drawn.has_motion).zip(self.motion.as_ref());
-        let motions =
-            Eye::BOTH.map(|eye| moving.map(|(eyes, motion)| motion.info(eye, &eyes.levels.wide.depth)));
+        let moving = eyes.filter(|eyes| eyes.drawn.leaves_frame).zip(self.motion.as_ref());
+        let motions = Eye::BOTH.map(|eye| {
+            let (eyes, motion) = moving?;
+            motion.info(eye, &eyes.levels.wide.depth, eyes.drawn.has_motion)
+        });
         // The insets, which come after the eyes, have no vectors.
         let after = |i: usize| {
             let motion = motions.get(i).and_then(Option::as_ref);
@@ -315,6 +320,17 @@ impl Session {
 fn frame_size(viewer: &Viewer, level: &RuntimeLevel) -> [u32; 2] {
     let wanted = viewer.eye_size(level.recommended.map(|n| n as f32));
     [0, 1].map(|i| wanted[i].min(level.size[i]))
+}
+
+/// True if a level's frusta are those of the eyes, to a hundredth of its pixels.
+fn is_alike(level: &EyePair, eyes: &EyePair) -> bool {
+    Eye::BOTH.iter().all(|eye| {
+        let [own, shown] = [level, eyes].map(|pair| pair.frusta[eye.index()]);
+        let pixel = (own.width() / level.size[0] as f32).min(own.height() / level.size[1] as f32);
+        let sides =
+            [own.left - shown.left, own.right - shown.right, own.bottom - shown.bottom, own.top - shown.top];
+        sides.iter().all(|side| side.abs() < 0.01 * pixel)
+    })
 }
 
 /// Returns the poses of the eyes in the scene, as far apart as the user has chosen.

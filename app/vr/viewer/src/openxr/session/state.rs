@@ -115,6 +115,11 @@ impl Session {
         self.motion.is_some()
     }
 
+    /// True if the runtime shows insets.
+    pub fn shows_insets(&self) -> bool {
+        self.inset.is_some()
+    }
+
     /// True if the runtime wants frames.
     pub fn is_running(&self) -> bool {
         self.is_running

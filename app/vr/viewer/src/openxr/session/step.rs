@@ -52,6 +52,10 @@ impl Session {
         if wait.should_render {
             layers = self.render(graphics, viewer, time, capture, &mut captured)?;
         }
+        // The runtime compares vectors with the frame before, which showed nothing.
+        if let (None, Some(motion)) = (&layers.eyes, &mut self.motion) {
+            motion.remember(None);
+        }
         let ended = self.end_frame(time, &layers);
         make_current(graphics)?;
         ended?;
