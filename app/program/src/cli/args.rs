@@ -145,8 +145,9 @@ mod tests {
 
     #[test]
     fn numbers_beyond_a_range_are_told_the_range() {
-        let command = clap::Command::new("x").arg(clap::Arg::new("n").value_parser(whole(1..=64u32)));
-        let parse = |text: &str| command.clone().try_get_matches_from(["x", text]);
+        let command =
+            clap::Command::new("x").arg(clap::Arg::new("n").long("n").value_parser(whole(1..=64u32)));
+        let parse = |text: &str| command.clone().try_get_matches_from(["x", &format!("--n={text}")]);
         assert_eq!(parse("64").unwrap().get_one::<u32>("n"), Some(&64));
         for wrong in ["", "0", "65", "-1", "1.5", "x", "99999999999"] {
             let message = parse(wrong).unwrap_err().to_string();
