@@ -16,14 +16,14 @@ const NAME: &str = "bill";
 /// The folder of the workspace in the bills, in place of the builder's.
 const PLACE: &str = "yoro";
 
-/// A published file's name without the version, its target, cargo's arguments, and the folder of its package.
-const FILES: [(&str, &str, &[&str], &str); 6] = [
-    ("yoro-{}-linux-x86_64", "x86_64-unknown-linux-gnu", &[], "app/program"),
-    ("yoro-{}.apk", "aarch64-linux-android", &[], "android"),
-    ("yoro-openxr-layer-{}", "x86_64-unknown-linux-gnu", &[], "app/engines/openxr-layer"),
-    ("yoro-library-{}", "x86_64-unknown-linux-gnu", &[], "app/engines/c"),
-    ("yoro-wgpu-{}", "x86_64-unknown-linux-gnu", &[], "app/engines/wgpu"),
-    ("yoro-page-{}", "wasm32-unknown-unknown", &[], "app/vr/web"),
+/// A published file's name without the version, its target, and the folder of its package.
+const FILES: [(&str, &str, &str); 6] = [
+    ("yoro-{}-linux-x86_64", "x86_64-unknown-linux-gnu", "app/program"),
+    ("yoro-{}.apk", "aarch64-linux-android", "android"),
+    ("yoro-openxr-layer-{}", "x86_64-unknown-linux-gnu", "app/engines/openxr-layer"),
+    ("yoro-library-{}", "x86_64-unknown-linux-gnu", "app/engines/c"),
+    ("yoro-wgpu-{}", "x86_64-unknown-linux-gnu", "app/engines/wgpu"),
+    ("yoro-page-{}", "wasm32-unknown-unknown", "app/vr/web"),
 ];
 
 /// Makes the bills, and returns their paths.
@@ -37,7 +37,7 @@ pub fn make(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     remove(&copy)?;
     run(Command::new("git").arg("clone").arg("--quiet").arg(root()).arg(&copy))?;
     let mut made = Vec::new();
-    for (name, target, features, package) in FILES {
+    for (name, target, package) in FILES {
         let mut command = Command::new(&tool);
         command.args([
             "cyclonedx",
@@ -48,7 +48,7 @@ pub fn make(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
             FORMAT,
             "--no-build-deps",
         ]);
-        command.args(["--override-filename", NAME, "--target", target]).args(features);
+        command.args(["--override-filename", NAME, "--target", target]);
         command.arg("--manifest-path").arg(copy.join("Cargo.toml")).env("SOURCE_DATE_EPOCH", "0");
         run(&mut command)?;
         let bill = copy.join(package).join(NAME).with_extension("json");
