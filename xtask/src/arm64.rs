@@ -1,9 +1,10 @@
-//! The simulated Android host as a program for arm64. qemu's user mode runs it on x86_64 machines, so that the tests
-//! execute the library that phones execute.
+//! Programs and libraries for Linux on arm64. qemu's user mode runs them on x86_64 machines: the simulated Android host,
+//! so that the tests execute the library that phones execute, and the program.
 //!
 //! qemu and the host's libraries come from Debian packages, which are only unpacked into a folder. apt gets a private
 //! state for this, and nothing is installed.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -16,9 +17,10 @@ use crate::rust::{Panic, Rust, build_std, source};
 
 /// Rust's name for the target.
 pub const TRIPLE: &str = "aarch64-unknown-linux-gnu";
-/// Mesa's EGL and OpenGL ES with its rasterizer, and what a linker needs. The package of libgcc is missing here, since
-/// its name contains a number.
+/// Mesa's EGL and OpenGL ES with its rasterizer, and what a linker needs. The package of libstdc++, which needs that of
+/// libgcc, is missing here, since its name contains a number.
 const PACKAGES: [&str; 5] = ["libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri", "libc6-dev"];
+const LIBSTDCXX: &str = "libstdc++-";
 const QEMU: [&str; 2] = ["usr/bin/qemu-aarch64-static", "usr/bin/qemu-aarch64"];
 
 /// Installs what compiling for arm64 needs, without asking, and fetches what its programs need. Returns the folder.
@@ -32,6 +34,7 @@ pub fn fetch() -> anyhow::Result<PathBuf> {
             Need::program("clang", &["clang"]),
             Need::program("ld.lld", &["lld"]),
             Need::program("llvm-strip", &["llvm"]),
+            Need::program("llvm-ar", &["llvm"]),
             source(rust.as_ref()),
         ]
     };
@@ -50,12 +53,11 @@ pub fn build_host() -> anyhow::Result<PathBuf> {
     let system = System::make(&folder)?;
     let program = build(&system, &folder.join("build"))?;
     let launcher = folder.join("yoro-android-host");
-    // This machine's libraries cannot be used, nor its GPU: qemu does not support the system calls of graphics drivers.
+    let words = system.arguments().map(|argument| quoted(Path::new(&argument)));
     let text = format!(
-        "# The simulated Android host for arm64, in qemu's user mode.\n\
-         exec {} -U LD_LIBRARY_PATH -E LIBGL_ALWAYS_SOFTWARE=1 -L {} {} \"$@\"\n",
+        "# The simulated Android host for arm64, in qemu's user mode.\nexec {} {} {} \"$@\"\n",
         quoted(&system.qemu),
-        quoted(&system.root),
+        words.join(" "),
         quoted(&program)
     );
     write_launcher(&launcher, &text)?;
@@ -92,23 +94,48 @@ impl System {
         let qemu = QEMU.map(|name| root.join(name)).into_iter().find(|program| program.is_file());
         Ok(Self { qemu: qemu.context("qemu is not where Debian's packages have it")?, root })
     }
+
+    /// Returns qemu's arguments before a program's path. This machine's libraries cannot be used, nor its GPU: qemu does
+    /// not support the system calls of graphics drivers.
+    fn arguments(&self) -> [OsString; 6] {
+        let [unset, set, root] = ["-U", "-E", "-L"].map(OsString::from);
+        [
+            unset,
+            "LD_LIBRARY_PATH".into(),
+            set,
+            "LIBGL_ALWAYS_SOFTWARE=1".into(),
+            root,
+            self.root.clone().into(),
+        ]
+    }
 }
 
 /// Downloads the packages and their dependencies, and returns the files.
 fn download(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
     apt.update()?;
-    let libgcc = newest_libgcc(&apt.names("libgcc-")?)
-        .context("this distribution has no libgcc-dev for the linker")?;
+    let libstdcxx =
+        newest(&apt.names(LIBSTDCXX)?).context("this distribution has no libstdc++-dev for the linker")?;
     let mut packages: Vec<String> = PACKAGES.iter().map(|name| format!("{name}:arm64")).collect();
-    packages.extend([format!("{libgcc}:arm64"), "qemu-user-static:amd64".to_owned()]);
+    packages.extend([format!("{libstdcxx}:arm64"), "qemu-user-static:amd64".to_owned()]);
     apt.download(&packages)
 }
 
-/// Returns the `libgcc-N-dev` with the largest number among package names, one per line.
-fn newest_libgcc(names: &str) -> Option<String> {
-    let number = |name: &str| name.strip_prefix("libgcc-")?.strip_suffix("-dev")?.parse::<u32>().ok();
+/// Returns the `libstdc++-N-dev` with the largest number among package names, one per line.
+fn newest(names: &str) -> Option<String> {
+    let number = |name: &str| name.strip_prefix(LIBSTDCXX)?.strip_suffix("-dev")?.parse::<u32>().ok();
     let newest = names.lines().filter_map(number).max()?;
-    Some(format!("libgcc-{newest}-dev"))
+    Some(format!("{LIBSTDCXX}{newest}-dev"))
+}
+
+/// Returns the command that runs a program for arm64 in qemu, with Mesa's rasterizer.
+///
+/// # Errors
+/// Fails if something cannot be obtained on this machine.
+pub fn emulated(program: &Path) -> anyhow::Result<Command> {
+    let system = System::make(&fetch()?)?;
+    let mut command = Command::new(&system.qemu);
+    command.args(system.arguments()).arg(program);
+    Ok(command)
 }
 
 /// Returns a cargo that compiles and links for arm64 with `--target` [`TRIPLE`]. Fetches and installs what it needs.
@@ -134,6 +161,14 @@ fn command(system: &System, panic: Panic) -> anyhow::Result<Command> {
         format!("-Clink-arg=--sysroot={}", system.root.display()),
     ];
     command.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"));
+    // For build scripts that compile C.
+    let underscored = TRIPLE.replace('-', "_");
+    let flags = format!("--target=aarch64-linux-gnu --sysroot={}", system.root.display());
+    for (variable, value) in
+        [("CC", "clang"), ("CXX", "clang++"), ("AR", "llvm-ar"), ("CFLAGS", &flags), ("CXXFLAGS", &flags)]
+    {
+        command.env(format!("{variable}_{underscored}"), value);
+    }
     Ok(command)
 }
 
@@ -156,9 +191,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_newest_libgcc_is_the_one_of_the_largest_number() {
-        let names = "libgcc-9-dev\nlibgcc-s1\nlibgcc-12-dev\nlibgcc-13-dev-arm64-cross\nlibgcc-11-dev\n";
-        assert_eq!(newest_libgcc(names).as_deref(), Some("libgcc-12-dev"));
-        assert_eq!(newest_libgcc("libgcc-s1\n"), None);
+    fn the_newest_libstdcxx_is_the_one_of_the_largest_number() {
+        let names = "libstdc++-9-dev\nlibstdc++-12-dev\nlibstdc++-13-dev-arm64-cross\nlibstdc++-11-pic\n";
+        assert_eq!(newest(names).as_deref(), Some("libstdc++-12-dev"));
+        assert_eq!(newest("libstdc++-arm-none-eabi-dev\n"), None);
     }
 }

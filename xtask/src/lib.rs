@@ -199,7 +199,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             return Ok(complete);
         }
         Task::CheckApk { file, store } => {
-            return android::check::check(&file, store);
+            return android::check::check(&file, store, false);
         }
         Task::Package { targets } => {
             package::package(&targets)?;

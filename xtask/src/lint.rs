@@ -7,6 +7,17 @@ use crate::{cargo, notices, web};
 /// The packages that could be published to a registry: the library's core and its dependencies.
 pub const PUBLISHED: [&str; 4] = ["yoro-shaders", "yoro-gl", "yoro", "yoro-wgpu"];
 
+/// The plugin for Bevy is a workspace of its own; `cargo xtask bevy test` compiles it.
+const BEVY: [&str; 2] = ["--manifest-path", "app/engines/bevy/Cargo.toml"];
+
+/// Returns cargo's arguments that pack the published crates: [`PUBLISHED`], and the plugin for Bevy.
+pub fn packing() -> [Vec<&'static str>; 2] {
+    let crates: Vec<&str> = PUBLISHED.iter().flat_map(|name| ["--package", name]).collect();
+    // Without the lock file, cargo does not ask the registry for packages that are not published.
+    let package = ["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"];
+    [[&package[..], &crates].concat(), [&package[..], &BEVY].concat()]
+}
+
 /// Runs all checks, even after one has failed.
 ///
 /// # Errors
@@ -29,16 +40,8 @@ pub fn lint() -> anyhow::Result<()> {
     }
     // What `cargo xtask run` builds.
     checks.push(vec!["check", "--quiet", "--package", "yoro-cli", "--bin", "yoro", "--no-default-features"]);
-    // Without the lock file, cargo does not ask the registry for packages that are not published.
-    let mut package = vec!["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"];
-    package.extend(PUBLISHED.iter().flat_map(|name| ["--package", name]));
-    checks.push(package);
-    // The plugin for Bevy is a workspace of its own; `cargo xtask bevy test` compiles it.
-    let bevy = ["--manifest-path", "app/engines/bevy/Cargo.toml"];
-    checks.push([&["fmt", "--check"][..], &bevy].concat());
-    checks.push(
-        [&["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"][..], &bevy].concat(),
-    );
+    checks.push([&["fmt", "--check"][..], &BEVY].concat());
+    checks.extend(packing());
     let mut failed: Vec<String> = checks
         .iter()
         .filter(|check| !cargo::succeeds(check, &[("RUSTDOCFLAGS", "--deny warnings")]))

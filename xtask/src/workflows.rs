@@ -42,7 +42,7 @@ fn each_command_of_a_host_runs_by_hand() {
     for (name, wanted) in [
         ("ci", &checks[..]),
         ("release", &["cargo xtask release --out dist"]),
-        ("site", &["cargo xtask release --out dist"]),
+        ("site", &["cargo xtask site --release dist"]),
     ] {
         let commands = commands(&root().join(".github/workflows").join(name).with_extension("yml"));
         for command in &commands {

@@ -116,16 +116,16 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     };
     let mut passed = true;
     if options.quest {
-        passed &= check::check(&packed(Variant::Quest, "-quest")?, Some(Store::Quest))?;
+        passed &= check::check(&packed(Variant::Quest, "-quest")?, Some(Store::Quest), keystore.debug)?;
     }
     let apk = packed(Variant::All, "")?;
-    passed &= check::check(&apk, None)?;
+    passed &= check::check(&apk, None, keystore.debug)?;
     if options.bundle {
         let bundle = apk.with_extension("aab");
         check::bundle(&apk, &bundle)?;
         sign(&bundle, &keystore, &JAR)?;
         println!("{}", bundle.display());
-        passed &= check::check(&bundle, Some(Store::Play))?;
+        passed &= check::check(&bundle, Some(Store::Play), keystore.debug)?;
     }
     if options.release && keystore.debug {
         println!(

@@ -39,17 +39,22 @@ pub enum Store {
 }
 
 /// Checks whether Android will install and start an APK, or whether a store takes it, and prints the result. Returns true
-/// if so.
+/// if so. With `any_key`, it may be signed for debugging.
 ///
 /// # Errors
 /// Fails if the file is missing or not an APK, or a tool for the checks is missing.
-pub fn check(apk: &Path, store: Option<Store>) -> anyhow::Result<bool> {
+pub fn check(apk: &Path, store: Option<Store>, any_key: bool) -> anyhow::Result<bool> {
     let store = match store {
         None => "-",
         Some(Store::Quest) => "quest",
         Some(Store::Play) => "play",
     };
-    let (report, passed) = run(&[&"check", &absolute_path(apk)?, &store])?;
+    let apk = absolute_path(apk)?;
+    let mut arguments: Vec<&dyn AsRef<OsStr>> = vec![&"check", &apk, &store];
+    if any_key {
+        arguments.push(&"any-key");
+    }
+    let (report, passed) = run(&arguments)?;
     console::print(&report);
     Ok(passed)
 }

@@ -1,4 +1,4 @@
-//! Bills of materials in CycloneDX, by cargo-cyclonedx.
+//! Bills of materials in CycloneDX, by cargo-cyclonedx: one for each file that contains others' code, with its name.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,22 +8,53 @@ use anyhow::{Context as _, bail};
 use crate::folders::{remove, root, target_folder, write};
 use crate::package::VERSION;
 use crate::package::linux::run;
+use crate::{arm64, web};
 
 const TOOL: &str = "0.5.9";
-const FORMAT: &str = "1.5";
+pub const FORMAT: &str = "1.5";
 /// The name that the tool gives to what it writes beside each manifest.
 const NAME: &str = "bill";
 /// The folder of the workspace in the bills, in place of the builder's.
 const PLACE: &str = "yoro";
 
-/// A published file's name without the version, its target, and the folder of its package.
-const FILES: [(&str, &str, &str); 6] = [
-    ("yoro-{}-linux-x86_64", "x86_64-unknown-linux-gnu", "app/program"),
-    ("yoro-{}.apk", "aarch64-linux-android", "android"),
-    ("yoro-openxr-layer-{}", "x86_64-unknown-linux-gnu", "app/engines/openxr-layer"),
-    ("yoro-library-{}", "x86_64-unknown-linux-gnu", "app/engines/c"),
-    ("yoro-wgpu-{}", "x86_64-unknown-linux-gnu", "app/engines/wgpu"),
-    ("yoro-page-{}", "wasm32-unknown-unknown", "app/vr/web"),
+/// What is added to a file's name for that of its bill.
+pub const ENDING: &str = ".cdx.json";
+
+const PROGRAM: &str = "app/program";
+const LAYER: &str = "app/engines/openxr-layer";
+const LIBRARY: &str = "app/engines/c";
+const APK: &str = "android";
+
+/// For each target the published files, `{}` for the version, and the folders of their packages.
+const FILES: [(&str, &[(&str, &str)]); 4] = [
+    (
+        "x86_64-unknown-linux-gnu",
+        &[
+            ("yoro-{}-linux-x86_64.tar.xz", PROGRAM),
+            ("yoro-openxr-layer-{}-linux-x86_64.tar.xz", LAYER),
+            ("libyoro-{}-linux-x86_64.tar.xz", LIBRARY),
+            ("yoro-wgpu-{}.crate", "app/engines/wgpu"),
+        ],
+    ),
+    (
+        arm64::TRIPLE,
+        &[
+            ("yoro-{}-linux-aarch64.tar.xz", PROGRAM),
+            ("yoro-openxr-layer-{}-linux-aarch64.tar.xz", LAYER),
+            ("libyoro-{}-linux-aarch64.tar.xz", LIBRARY),
+        ],
+    ),
+    (
+        "aarch64-linux-android",
+        &[
+            ("yoro-{}.apk", APK),
+            ("yoro-{}-quest.apk", APK),
+            ("yoro-{}.aab", APK),
+            ("yoro-openxr-layer-{}.aar", LAYER),
+            ("yoro-{}.aar", LIBRARY),
+        ],
+    ),
+    (web::TRIPLE, &[("yoro-page-{}", "app/vr/web")]),
 ];
 
 /// Makes the bills, and returns their paths.
@@ -37,7 +68,7 @@ pub fn make(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     remove(&copy)?;
     run(Command::new("git").arg("clone").arg("--quiet").arg(root()).arg(&copy))?;
     let mut made = Vec::new();
-    for (name, target, package) in FILES {
+    for (target, files) in FILES {
         let mut command = Command::new(&tool);
         command.args([
             "cyclonedx",
@@ -51,12 +82,14 @@ pub fn make(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
         command.args(["--override-filename", NAME, "--target", target]);
         command.arg("--manifest-path").arg(copy.join("Cargo.toml")).env("SOURCE_DATE_EPOCH", "0");
         run(&mut command)?;
-        let bill = copy.join(package).join(NAME).with_extension("json");
-        let text =
-            std::fs::read_to_string(&bill).with_context(|| format!("{} was not made", bill.display()))?;
-        let file = folder.join(format!("{}.cdx.json", name.replace("{}", VERSION)));
-        write(&file, text.replace(&copy.display().to_string(), &format!("/{PLACE}")))?;
-        made.push(file);
+        for (name, package) in files {
+            let bill = copy.join(package).join(NAME).with_extension("json");
+            let text =
+                std::fs::read_to_string(&bill).with_context(|| format!("{} was not made", bill.display()))?;
+            let file = folder.join(name.replace("{}", VERSION) + ENDING);
+            write(&file, text.replace(&copy.display().to_string(), &format!("/{PLACE}")))?;
+            made.push(file);
+        }
     }
     remove(&copy)?;
     Ok(made)

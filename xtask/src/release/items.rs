@@ -16,7 +16,7 @@ use super::{bills, program};
 /// A part of a release.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Item {
-    /// The program for Linux on this machine's processor
+    /// The program for Linux on this machine's processor and on arm64
     Program,
     /// The APKs and the bundle
     Apk,
@@ -57,25 +57,25 @@ pub struct Description {
     pub tested: &'static str,
     pub untested: &'static str,
     pub same: Same,
+    /// Some of those whose notices are in the file, if it contains others' code.
+    pub notices: &'static [&'static str],
 }
+
+/// Of what the layer and the C library contain.
+const LIBRARIES: &[&str] = &["ash", "glam", "glow"];
+const APPLICATION: &[&str] = &["glow", "android-properties", "The font B612 Mono"];
 
 const NO_DEVICE: &str = "a device";
 
 /// The descriptions, the first that fits counts.
-pub const DESCRIPTIONS: [Description; 13] = [
-    Description {
-        parts: ["yoro-", ".cdx.json"],
-        title: "what is in a file, in CycloneDX 1.5",
-        tested: "",
-        untested: "",
-        same: Same::Anywhere,
-    },
+pub const DESCRIPTIONS: [Description; 12] = [
     Description {
         parts: ["yoro-openxr-layer", "linux"],
         title: "OpenXR applications that render one view",
         tested: "x86_64, of another build: hello_xr on Monado",
         untested: "arm64, headsets, Steam Frame",
         same: Same::Compilers,
+        notices: LIBRARIES,
     },
     Description {
         parts: ["yoro-openxr-layer", ".aar"],
@@ -83,6 +83,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "another build of it, in the simulated Android host",
         untested: NO_DEVICE,
         same: Same::Compilers,
+        notices: LIBRARIES,
     },
     Description {
         parts: ["libyoro", "linux"],
@@ -90,13 +91,15 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "x86_64: its README's commands, pictures against Rust's; arm64: it is linked",
         untested: "arm64 devices",
         same: Same::Compilers,
+        notices: LIBRARIES,
     },
     Description {
-        parts: ["yoro-", "linux-x86_64.tar.xz"],
+        parts: ["yoro-", "linux"],
         title: "the program: render, measure, stream, OpenXR",
-        tested: "all tests, of another build",
-        untested: "a system without Rust, headsets",
+        tested: "it renders a scene, arm64 in qemu; x86_64: all tests, of another build",
+        untested: "headsets, arm64 devices, Steam Frame",
         same: Same::Compilers,
+        notices: &["openh264-sys2", "clap", "rustls"],
     },
     Description {
         parts: ["yoro-", "-quest.apk"],
@@ -104,6 +107,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "check-apk --store quest; its library in the simulated Android host",
         untested: "a Quest, the store",
         same: Same::Key,
+        notices: APPLICATION,
     },
     Description {
         parts: ["yoro-", ".apk"],
@@ -111,6 +115,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "check-apk, the simulated Android host",
         untested: NO_DEVICE,
         same: Same::Key,
+        notices: APPLICATION,
     },
     Description {
         parts: ["yoro-", ".aab"],
@@ -118,6 +123,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "check-apk --store play",
         untested: "a device, bundletool, the store",
         same: Same::Key,
+        notices: APPLICATION,
     },
     Description {
         parts: ["yoro-", ".aar"],
@@ -125,6 +131,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "it is linked with public names alone",
         untested: NO_DEVICE,
         same: Same::Compilers,
+        notices: LIBRARIES,
     },
     Description {
         parts: ["yoro-kit", ".zip"],
@@ -132,6 +139,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "pictures against the library's",
         untested: "",
         same: Same::Anywhere,
+        notices: &[],
     },
     Description {
         parts: ["yoro-godot", ".zip"],
@@ -139,6 +147,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "Godot opens it, pictures against its second camera",
         untested: "GPUs",
         same: Same::Anywhere,
+        notices: &[],
     },
     Description {
         parts: ["yoro-three", ".tgz"],
@@ -146,6 +155,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "installed and bundled, pictures against three's own eyes",
         untested: "headsets",
         same: Same::Compilers,
+        notices: &[],
     },
     Description {
         parts: ["", ".crate"],
@@ -153,6 +163,7 @@ pub const DESCRIPTIONS: [Description; 13] = [
         tested: "all tests, before they are packed",
         untested: "",
         same: Same::Compilers,
+        notices: &[],
     },
 ];
 
@@ -184,7 +195,7 @@ impl Item {
         let folder = target_folder()?.join("package");
         fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
         match self {
-            Item::Program => Ok(vec![program::archive(&folder)?]),
+            Item::Program => Ok(vec![program::native(&folder)?, program::aarch64(&folder)?]),
             Item::Apk => apks(&folder),
             Item::Layer => package(&[Target::LayerLinux, Target::LayerLinuxAarch64, Target::AndroidLayer]),
             Item::Library => package(&[Target::Linux, Target::LinuxAarch64, Target::Android]),
@@ -228,16 +239,11 @@ fn zip(from: &Path, name: &str, folder: &Path) -> anyhow::Result<PathBuf> {
 fn crates() -> anyhow::Result<Vec<PathBuf>> {
     let target = target_folder()?;
     let mut made = Vec::new();
-    let workspace: Vec<&str> = lint::PUBLISHED.iter().flat_map(|name| ["--package", name]).collect();
-    let plugin = ["--manifest-path", "app/engines/bevy/Cargo.toml"];
-    let kinds: [(&[&str], &[&str], PathBuf); 2] =
-        [(&workspace, &lint::PUBLISHED, target.clone()), (&plugin, &["bevy_yoro"], target.join("bevy"))];
-    for (which, names, target) in kinds {
+    let kinds: [(&[&str], PathBuf); 2] =
+        [(&lint::PUBLISHED, target.clone()), (&["bevy_yoro"], target.join("bevy"))];
+    for (arguments, (names, target)) in lint::packing().into_iter().zip(kinds) {
         let place = target.display().to_string();
-        let mut arguments = vec!["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"];
-        arguments.extend(["--target-dir", &place]);
-        arguments.extend(which);
-        if !cargo::succeeds(&arguments, &[]) {
+        if !cargo::succeeds(&[&arguments[..], &["--target-dir", &place]].concat(), &[]) {
             bail!("the crates cannot be packed: see above");
         }
         made.extend(names.iter().map(|name| target.join("package").join(format!("{name}-{VERSION}.crate"))));
@@ -246,12 +252,17 @@ fn crates() -> anyhow::Result<Vec<PathBuf>> {
 }
 
 impl Description {
-    /// Returns the description of a file, if it is one of a release.
-    pub fn of(name: &str) -> Option<&'static Description> {
-        DESCRIPTIONS.iter().find(|description| {
+    /// Returns the description of a file.
+    ///
+    /// # Errors
+    /// Fails if it is no file of a release.
+    pub fn of(file: &Path) -> anyhow::Result<&'static Description> {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let description = DESCRIPTIONS.iter().find(|description| {
             let [beginning, other] = description.parts;
             name.starts_with(beginning) && name.contains(other)
-        })
+        });
+        description.with_context(|| format!("{} is no file of a release: take it away", file.display()))
     }
 }
 
@@ -271,11 +282,11 @@ mod tests {
             ("yoro-0.1.0.aar", "the C library"),
             ("yoro-gl-0.1.0.crate", "Rust"),
             ("bevy_yoro-0.1.0.crate", "Rust"),
-            ("yoro-0.1.0.apk.cdx.json", "what is in"),
+            ("yoro-0.1.0-linux-aarch64.tar.xz", "the program: render"),
         ] {
-            let description = Description::of(name).unwrap();
+            let description = Description::of(Path::new(name)).unwrap();
             assert!(description.title.starts_with(title), "{name}: {}", description.title);
         }
-        assert!(Description::of("notes.txt").is_none());
+        assert!(Description::of(Path::new("notes.txt")).is_err());
     }
 }

@@ -15,8 +15,9 @@ use anyhow::{Context as _, bail};
 use crate::apt::{self, Need};
 use crate::folders::{copy, copy_folder, remove, root, write};
 use crate::rust::{self, Rust};
-use crate::{site, web};
+use crate::{notices, site, web};
 
+use items::Description;
 pub use items::Item;
 
 /// The checksums of all files, as `sha256sum --check` reads them.
@@ -27,14 +28,15 @@ pub const SUMMARY: &str = "RELEASE.md";
 /// Builds these items, or all if none is given, into a folder. Files of other items that are in it stay.
 ///
 /// # Errors
-/// Fails if something is missing or does not compile.
+/// Fails if something is missing or does not compile, or the folder has files of another commit.
 pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
     let start = Instant::now();
     let out = absolute(out).context("the current folder is gone: change to another")?;
     fs::create_dir_all(&out).with_context(|| format!("{} cannot be made", out.display()))?;
     let items: Vec<Item> = if only.is_empty() { Item::ALL.to_vec() } else { in_order(only) };
-    apt::install_missing(needs, true)?;
     let commit = commit()?;
+    check_origin(&out, &commit)?;
+    apt::install_missing(needs, true)?;
     let mut times = Vec::new();
     for item in items.iter().filter(|item| **item != Item::Site) {
         let begin = Instant::now();
@@ -44,13 +46,15 @@ pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
             if made.is_dir() {
                 bail!("{} is a folder: it cannot be published", made.display());
             }
+            if !name.to_string_lossy().ends_with(bills::ENDING) {
+                notices::check(&made, Description::of(&made)?.notices)?;
+            }
             copy(&made, &out.join(name))?;
         }
-        times.push((item.name(), begin.elapsed()));
-    }
-    if !files(&out)?.is_empty() {
+        // Now, so that the folder is complete if the next item fails.
         write_sums(&out)?;
         write(&out.join(SUMMARY), summary::text(&out, &commit)?)?;
+        times.push((item.name(), begin.elapsed()));
     }
     if items.contains(&Item::Site) {
         let begin = Instant::now();
@@ -75,6 +79,9 @@ fn needs() -> Vec<Need> {
     vec![
         Need::program("xz", &["xz-utils"]),
         Need::program("strip", &["binutils"]),
+        Need::program("unzip", &["unzip"]),
+        // Without it, the program's encoder of H.264 has no code for this processor.
+        Need::program("nasm", &["nasm"]),
         rust::source(rust.as_ref()),
     ]
 }
@@ -99,6 +106,18 @@ fn commit() -> anyhow::Result<String> {
     Ok(if is_clean { commit } else { format!("{commit}, with changes that were not committed") })
 }
 
+/// Fails if the folder has files that were not built from this commit.
+fn check_origin(out: &Path, commit: &str) -> anyhow::Result<()> {
+    let known = fs::read_to_string(out.join(SUMMARY)).unwrap_or_default();
+    if !files(out)?.is_empty() && !known.contains(&summary::origin(commit)) {
+        bail!(
+            "{} has files that were not built from {commit}: empty it, or name another folder by --out",
+            out.display()
+        );
+    }
+    Ok(())
+}
+
 /// Returns the files in the folder that are published, by name: not those that describe them.
 fn files(out: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let entries = fs::read_dir(out).with_context(|| format!("{} cannot be read", out.display()))?;
@@ -119,4 +138,22 @@ fn write_sums(out: &Path) -> anyhow::Result<()> {
         bail!("sha256sum failed: {}", String::from_utf8_lossy(&output.stderr).trim());
     }
     write(&sums, output.stdout)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_has_files_of_one_commit() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path();
+        let refusal = |commit: &str| check_origin(out, commit).err().map(|error| error.to_string());
+        assert_eq!(refusal("abc"), None);
+        write(&out.join("yoro-0.1.0.apk"), "").unwrap();
+        assert!(refusal("abc").unwrap().contains("not built from abc: empty it"));
+        write(&out.join(SUMMARY), summary::text(out, "abc").unwrap()).unwrap();
+        assert_eq!(refusal("abc"), None);
+        assert!(refusal("abc, with changes that were not committed").is_some() && refusal("ab").is_some());
+    }
 }

@@ -10,6 +10,7 @@ use crate::notices;
 use crate::package::VERSION;
 
 use super::SUMS;
+use super::bills::{ENDING, FORMAT};
 use super::items::{Description, Same};
 
 /// Returns the text for the files in a folder, which were built from a commit.
@@ -20,21 +21,23 @@ pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
     let mut text = format!(
         "# yoro {VERSION}\n\
          \n\
-         Built from {commit}. `sha256sum --check {SUMS}` checks the files. What contains code of others has its `{}`\n\
-         inside.\n\
+         {} `sha256sum --check {SUMS}` checks the files. What contains code of others has its `{}`\n\
+         inside, and beside it, as `FILE{ENDING}`, a list of that code in CycloneDX {FORMAT}.\n\
          \n\
          **No phone and no headset has run any of it.** *Tested by* says what took a device's place.\n\
          \n\
          | file | bytes | for | tested by | not tested on | same bytes again |\n\
          |---|---|---|---|---|---|\n",
+        origin(commit),
         notices::FILE
     );
     for path in super::files(out)? {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if name.ends_with(ENDING) {
+            continue;
+        }
         let size = fs::metadata(&path).with_context(|| format!("{} cannot be read", path.display()))?.len();
-        let description = Description::of(&name)
-            .with_context(|| format!("{} is no file of a release: take it away", path.display()))?;
-        let Description { title, tested, untested, same, .. } = description;
+        let Description { title, tested, untested, same, .. } = Description::of(&path)?;
         // Writing to a string cannot fail.
         let _ = writeln!(text, "| `{name}` | {size} | {title} | {tested} | {untested} | {} |", again(*same));
     }
@@ -44,6 +47,11 @@ pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
          for debugging, which no store accepts.\n",
     );
     Ok(text)
+}
+
+/// Returns the sentence that says of which commit the files are.
+pub fn origin(commit: &str) -> String {
+    format!("Built from {commit}.")
 }
 
 fn again(same: Same) -> &'static str {
@@ -61,7 +69,7 @@ mod tests {
     #[test]
     fn a_row_for_each_file() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["yoro-0.1.0.apk", "yoro-0.1.0.crate", SUMS] {
+        for name in ["yoro-0.1.0.apk", "yoro-0.1.0.apk.cdx.json", "yoro-0.1.0.crate", SUMS] {
             fs::write(folder.path().join(name), "four").unwrap();
         }
         let text = text(folder.path(), "abc").unwrap();

@@ -75,11 +75,19 @@ pub fn build_example() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Builds the page, and returns its folder, `target/web`.
+/// Builds the page, and returns its folder, `target/web`. Without npm, it lacks the example for three.js.
 ///
 /// # Errors
 /// Fails if something is missing or does not compile, or the module is too large.
 pub fn build() -> anyhow::Result<PathBuf> {
+    build_with(|error| {
+        println!("the example for three.js was left out: {error:#}");
+        Ok(String::new())
+    })
+}
+
+/// Builds the page. `without` decides what happens if the example for three.js cannot be made.
+fn build_with(without: fn(anyhow::Error) -> anyhow::Result<String>) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let target = target_folder()?;
     let module = compile(&["--package", "yoro-web"], "yoro_web")?;
@@ -95,10 +103,7 @@ pub fn build() -> anyhow::Result<PathBuf> {
     bind(&renamed, &unfinished.join(site::VERSION), &site::sources())?;
     site::assemble(&unfinished)?;
     let mut notices = notices::text("yoro-web", TRIPLE, &["--all-features"])?;
-    match three::example(&unfinished.join("three")) {
-        Ok(licence) => notices.push_str(&licence),
-        Err(error) => println!("the example for three.js was left out: {error:#}"),
-    }
+    notices.push_str(&three::example(&unfinished.join("three")).or_else(without)?);
     write(&unfinished.join(notices::FILE), notices)?;
     remove(&folder)?;
     fs::rename(&unfinished, &folder).with_context(|| format!("{} cannot be written", folder.display()))?;
@@ -114,17 +119,17 @@ pub fn build() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Builds the page unless this process has done so, and returns its folder.
+/// Builds the whole page unless this process has done so, and returns its folder.
 ///
 /// # Errors
-/// Fails as [`build`] does.
+/// Fails as [`build`] does, and if the example for three.js cannot be made.
 pub fn build_once() -> anyhow::Result<PathBuf> {
     static BUILT: Mutex<Option<PathBuf>> = Mutex::new(None);
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(folder) = &*built {
         return Ok(folder.clone());
     }
-    let folder = build()?;
+    let folder = build_with(|error| Err(error.context("the example for three.js cannot be made")))?;
     *built = Some(folder.clone());
     Ok(folder)
 }

@@ -136,13 +136,7 @@ pub fn check(bundle: &Path, apk: &Path, report: &mut Report) -> anyhow::Result<(
         (found != Some(wanted)).then(|| format!("{name} is not as bundletool wants it"))
     };
     let problem = told(CONFIG, config(), content(CONFIG)).or_else(|| told(NATIVE, native(), content(NATIVE)));
-    let signed = content("META-INF/MANIFEST.MF").is_some();
     report.row("layout", format!("bundletool {LAYOUT}: one module, a folder for each processor"), problem);
-    report.row(
-        "signature",
-        if signed { "of the jar" } else { "none" },
-        (!signed).then(|| "no store takes it".into()),
-    );
     let strange: Vec<String> = archive
         .file_names()
         .filter_map(|name| name.ok().map(std::borrow::Cow::into_owned))

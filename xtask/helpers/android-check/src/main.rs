@@ -1,5 +1,6 @@
-//! Works with Android's archives and libraries. `check APK STORE` checks whether Android will install and start an
-//! APK or a bundle (.aab), and whether a store (`quest`, `play`; `-` for none) takes it, `bundle APK AAB` converts an APK to a bundle, `loader LIBRARY` prints the architecture of an OpenXR
+//! Works with Android's archives and libraries. `check APK STORE [any-key]` checks whether Android will install and start
+//! an APK or a bundle (.aab), and whether a store (`quest`, `play`; `-` for none) takes it, with `any-key` but for the key
+//! that signed it; `bundle APK AAB` converts an APK to a bundle, `loader LIBRARY` prints the architecture of an OpenXR
 //! loader, and `pack AAR FOLDER` packs the files of a folder.
 //!
 //! This is a separate program so that only people who build for Android have to compile its dependencies.
@@ -34,8 +35,8 @@ fn main() -> ExitCode {
 /// Returns the text to print, and false if a check has failed.
 fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
     Ok(match arguments {
-        ["check", apk, store] => {
-            let report = check::check(Path::new(apk), Store::named(store)?)?;
+        ["check", apk, store, key @ ..] if key.is_empty() || *key == ["any-key"] => {
+            let report = check::check(Path::new(apk), Store::named(store)?, !key.is_empty())?;
             (report.to_string(), report.passed())
         }
         ["bundle", apk, bundle] => {
@@ -47,6 +48,6 @@ fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
             archive::pack(Path::new(folder), Path::new(packed))?;
             (String::new(), true)
         }
-        _ => bail!("usage: check APK STORE, bundle APK AAB, loader LIBRARY, or pack AAR FOLDER"),
+        _ => bail!("usage: check APK STORE [any-key], bundle APK AAB, loader LIBRARY, or pack AAR FOLDER"),
     })
 }

@@ -67,12 +67,16 @@ fn style() -> anyhow::Result<String> {
 /// Copies the files of a release into the site, and returns their description.
 fn downloads(site: &Path, release: &Path) -> anyhow::Result<String> {
     let (mut text, sums) = (read(&release.join(SUMMARY))?, read(&release.join(SUMS))?);
-    for name in sums.lines().filter_map(|line| line.split_once("  ")).map(|(_, name)| name) {
+    let mut table = String::new();
+    for (sum, name) in sums.lines().filter_map(|line| line.split_once("  ")) {
         copy(&release.join(name), &site.join(DOWNLOADS).join(name))?;
         text = text.replace(&format!("| `{name}` |"), &format!("| [`{name}`]({DOWNLOADS}/{name}) |"));
+        table += &format!("| [`{name}`]({DOWNLOADS}/{name}) | `{sum}` |\n");
     }
     copy(&release.join(SUMS), &site.join(DOWNLOADS).join(SUMS))?;
-    Ok(format!("{text}\n## Checksums\n\n[{SUMS}]({DOWNLOADS}/{SUMS})\n\n```text\n{sums}```\n"))
+    Ok(format!(
+        "{text}\n## Checksums\n\n[{SUMS}]({DOWNLOADS}/{SUMS}):\n\n| file | SHA-256 |\n|---|---|\n{table}"
+    ))
 }
 
 fn read(path: &Path) -> anyhow::Result<String> {
