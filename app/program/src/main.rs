@@ -10,7 +10,7 @@ use yoro_files::interrupt;
 
 /// Render one eye, synthesize the other
 #[derive(Parser)]
-#[command(version, arg_required_else_help = true)]
+#[command(name = "yoro", version, arg_required_else_help = true)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -93,8 +93,8 @@ fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
          Needs glibc {major}.{minor} or newer, and EGL with OpenGL ES 3 from the distribution, with a GPU's driver or without:\n\
          \n\
          ```sh\n\
-         apt-get install libegl1 libgles2 libgl1-mesa-dri       # Debian, Ubuntu\n\
-         dnf install libglvnd-egl libglvnd-gles mesa-dri-drivers # Fedora\n\
+         apt-get install libegl1 libgl1-mesa-dri       # Debian, Ubuntu\n\
+         dnf install libglvnd-egl mesa-dri-drivers     # Fedora, not tried\n\
          ```\n\
          \n\
          ```sh\n\

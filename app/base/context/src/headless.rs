@@ -49,7 +49,7 @@ pub enum ContextError {
     Osmesa(String),
     /// Neither backend works.
     #[error(
-        "no OpenGL here: EGL: {egl}; OSMesa: {osmesa}; install Mesa (Debian: apt install libegl1 libgl1-mesa-dri libosmesa6), or run `cargo xtask setup`"
+        "no OpenGL here: EGL: {egl}; OSMesa: {osmesa}; install libEGL and a driver (Debian: apt install libegl1 libgl1-mesa-dri)"
     )]
     None {
         /// EGL's reason.

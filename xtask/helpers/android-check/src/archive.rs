@@ -202,16 +202,20 @@ pub mod tests {
     }
 
     #[test]
-    fn a_folder_is_packed_with_its_paths() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["jni/x86_64/lib.so", "AndroidManifest.xml"] {
-            let path = folder.path().join("content").join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, name).unwrap();
-        }
-        let packed = folder.path().join("packed.aar");
-        pack(&folder.path().join("content"), &packed).unwrap();
-        let mut zip = ZipArchive::new(fs::File::open(&packed).unwrap()).unwrap();
+    fn a_folder_is_packed_with_its_paths_and_to_the_same_bytes_again() {
+        let files = ["jni/x86_64/lib.so", "AndroidManifest.xml"];
+        let packed = |names: [&str; 2]| {
+            let folder = tempfile::tempdir().unwrap();
+            for name in names {
+                write(&folder.path().join("content").join(name), name).unwrap();
+            }
+            let packed = folder.path().join("packed.aar");
+            pack(&folder.path().join("content"), &packed).unwrap();
+            fs::read(packed).unwrap()
+        };
+        let bytes = packed(files);
+        assert!(bytes == packed([files[1], files[0]]));
+        let mut zip = ZipArchive::new(Cursor::new(bytes)).unwrap();
         let names: Vec<String> =
             (0..2).map(|i| zip.by_index(i).unwrap().name().unwrap().into_owned()).collect();
         assert_eq!(names, ["AndroidManifest.xml", "jni/x86_64/lib.so"]);
