@@ -457,6 +457,7 @@ fn missing_extensions_are_worked_around() {
         "XR_EXT_local_floor",
         "XR_BD_controller_interaction",
         "XR_VARJO_quad_views",
+        "XR_FB_foveation_configuration",
     ];
     let missing_extensions = optional.map(str::to_owned).into();
     let simulated = Simulated::new(&Script { missing_extensions, ..Script::default() });
@@ -712,6 +713,15 @@ fn foveated_eyes_are_composed_for_runtimes_without_insets() {
         simulated.succeed(&format!("--frames 2 --set foveation={foveation}"));
         simulated
     });
+    // The runtime's own foveation is set for the pass that composes.
+    let levels = [&whole, &foveated].map(|run| {
+        let requests = run.log().into_iter().filter_map(|entry| match entry {
+            Entry::Request { what, value } if what == "foveation" => Some(value),
+            _ => None,
+        });
+        requests.collect::<Vec<f64>>()
+    });
+    assert_eq!(levels, [vec![], vec![2.0]]);
     let (_, views) = foveated.views().pop().unwrap();
     for (i, view) in views.iter().enumerate() {
         let depth = view.depth.as_ref().unwrap().image.rect;

@@ -1,13 +1,13 @@
 //! Functions of extensions.
 
 use openxr_sys as sys;
-use sys::Result as Code;
+use sys::{Handle, Result as Code};
 
 use crate::frame::submitted;
 use crate::instance::check_system;
 use crate::log::Entry;
 use crate::session::views_of;
-use crate::world::{Answer, Array, DONE, Event, World, forbid_if};
+use crate::world::{Answer, Array, DONE, Event, World, forbid_if, found, in_chain};
 
 pub fn enumerate_display_refresh_rates(
     world: &mut World,
@@ -71,6 +71,53 @@ pub fn get_recommended_layer_resolution(
     let [width, height] = world.script.eyes[0].size.map(|pixels| pixels as i32 * 3 / 4);
     resolution.recommended_image_dimensions = sys::Extent2Di { width, height };
     resolution.is_valid = sys::TRUE;
+    DONE
+}
+
+pub fn create_foveation_profile(
+    world: &mut World,
+    session: sys::Session,
+    info: &sys::FoveationProfileCreateInfoFB,
+    out: &mut sys::FoveationProfileFB,
+) -> Answer {
+    world.session(session)?;
+    let ty = sys::FoveationLevelProfileCreateInfoFB::TYPE;
+    // SAFETY: a chain of structures, which begin with this header.
+    let level = unsafe { in_chain::<sys::FoveationLevelProfileCreateInfoFB>(info.next, ty) };
+    let level = level.map_or(sys::FoveationLevelFB::NONE, |profile| profile.level);
+    let handle = world.new_handle();
+    world.current()?.foveations.insert(handle, level);
+    *out = sys::FoveationProfileFB::from_raw(handle);
+    DONE
+}
+
+pub fn destroy_foveation_profile(world: &mut World, profile: sys::FoveationProfileFB) -> Answer {
+    found(world.current()?.foveations.remove(&profile.into_raw()), "not a profile of foveation")?;
+    DONE
+}
+
+/// Logs the level of foveation. Images keep their density: no driver here has foveated textures.
+pub fn update_swapchain(
+    world: &mut World,
+    swapchain: sys::Swapchain,
+    state: &sys::SwapchainStateBaseHeaderFB,
+) -> Answer {
+    let known = world.swapchain(swapchain)?;
+    forbid_if(
+        !known.is_foveated,
+        Code::ERROR_VALIDATION_FAILURE,
+        "the swapchain was made without foveation",
+    )?;
+    forbid_if(
+        state.ty != sys::SwapchainStateFoveationFB::TYPE,
+        Code::ERROR_VALIDATION_FAILURE,
+        "the structure's type is wrong",
+    )?;
+    // SAFETY: the structure has this type.
+    let state = unsafe { &*std::ptr::from_ref(state).cast::<sys::SwapchainStateFoveationFB>() };
+    let level = world.current()?.foveations.get(&state.profile.into_raw()).copied();
+    let level = found(level, "not a profile of foveation")?;
+    world.log.write(&Entry::Request { what: "foveation".into(), value: level.into_raw().into() });
     DONE
 }
 

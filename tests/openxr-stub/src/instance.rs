@@ -24,9 +24,11 @@ pub const QUAD_VIEWS: &str = "XR_VARJO_quad_views";
 /// The extensions for frames made of motion vectors.
 pub const FRAME_SYNTHESIS: &str = "XR_EXT_frame_synthesis";
 pub const SPACE_WARP: &str = "XR_FB_space_warp";
+/// The extension for images whose density the runtime can change.
+pub const FOVEATION: &str = "XR_FB_foveation";
 
 /// The extensions that can be offered, with their versions.
-pub const EXTENSIONS: [(&str, u32); 19] = [
+pub const EXTENSIONS: [(&str, u32); 22] = [
     ("XR_KHR_opengl_es_enable", 8),
     ("XR_KHR_vulkan_enable", 8),
     ("XR_KHR_vulkan_enable2", 2),
@@ -46,6 +48,9 @@ pub const EXTENSIONS: [(&str, u32); 19] = [
     (QUAD_VIEWS, 2),
     (FRAME_SYNTHESIS, 1),
     (SPACE_WARP, 2),
+    (FOVEATION, 1),
+    ("XR_FB_foveation_configuration", 1),
+    ("XR_FB_swapchain_update_state", 3),
 ];
 
 /// Returns the string in an array of characters.
@@ -148,6 +153,7 @@ pub fn create_instance(world: &mut World, info: &sys::InstanceCreateInfo, out: &
         session: None,
         spaces: HashMap::new(),
         swapchains: HashMap::new(),
+        foveations: HashMap::new(),
         local_yaw: 0.0,
     });
     *out = sys::Instance::from_raw(handle);

@@ -6,8 +6,9 @@ use openxr_sys as sys;
 use sys::{Handle, Result as Code};
 
 use crate::graphics::Texture;
+use crate::instance::FOVEATION;
 use crate::log::Entry;
-use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden, found};
+use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden, found, in_chain};
 
 const IMAGES: usize = 3;
 
@@ -16,6 +17,8 @@ pub struct Swapchain {
     pub size: [u32; 2],
     pub layers: u32,
     pub usage: sys::SwapchainUsageFlags,
+    /// True if the density of its images can change.
+    pub is_foveated: bool,
     pub textures: Vec<Texture>,
     /// Acquired images, oldest first, with true for those that were waited for.
     pub acquired: VecDeque<(usize, bool)>,
@@ -101,6 +104,14 @@ pub fn create_swapchain(
     let graphics = &mut world.session(session)?.graphics;
     let textures: Option<Vec<_>> = (0..IMAGES).map(|_| graphics.texture(info)).collect();
     let textures = textures.ok_or(Code::ERROR_OUT_OF_MEMORY)?;
+    let foveation = sys::SwapchainCreateInfoFoveationFB::TYPE;
+    // SAFETY: a chain of structures, which begin with this header.
+    let foveation = unsafe { in_chain::<sys::SwapchainCreateInfoFoveationFB>(info.next, foveation) };
+    forbid_if(
+        foveation.is_some() && !world.current()?.has(FOVEATION),
+        Code::ERROR_VALIDATION_FAILURE,
+        format!("a structure of {FOVEATION}, which is not enabled"),
+    )?;
     let handle = world.new_handle();
     world.log.write(&Entry::Swapchain {
         id: handle,
@@ -114,6 +125,7 @@ pub fn create_swapchain(
         size,
         layers: info.array_size,
         usage: info.usage_flags,
+        is_foveated: foveation.is_some(),
         textures,
         acquired: VecDeque::new(),
         released: None,

@@ -192,13 +192,20 @@ table! {
         session: Session, info in RecommendedLayerResolutionGetInfoMETA,
         resolution out RecommendedLayerResolutionMETA
     ), "XR_META_recommended_layer_resolution";
+    CreateFoveationProfileFB = extension::create_foveation_profile(
+        session: Session, info in FoveationProfileCreateInfoFB, result out FoveationProfileFB
+    ), "XR_FB_foveation";
+    DestroyFoveationProfileFB = extension::destroy_foveation_profile(profile: FoveationProfileFB), "XR_FB_foveation";
+    UpdateSwapchainFB = extension::update_swapchain(
+        swapchain: Swapchain, state in SwapchainStateBaseHeaderFB
+    ), "XR_FB_swapchain_update_state";
     SetAndroidApplicationThreadKHR = extension::set_android_application_thread(
         session: Session, kind: AndroidThreadTypeKHR, thread: u32
     ), "XR_KHR_android_thread_settings";
 }
 
 /// Functions that loaders ask for, but that no application under test calls.
-const NOT_CALLED: [&str; 14] = [
+const NOT_CALLED: [&str; 15] = [
     "xrGetActionStateFloat",
     "xrGetActionStatePose",
     "xrGetCurrentInteractionProfile",
@@ -213,6 +220,7 @@ const NOT_CALLED: [&str; 14] = [
     "xrEnumerateReferenceSpaces",
     "xrGetReferenceSpaceBoundsRect",
     "xrGetDisplayRefreshRateFB",
+    "xrGetSwapchainStateFB",
 ];
 
 extern "system" fn not_called() -> sys::Result {

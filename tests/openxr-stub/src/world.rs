@@ -132,6 +132,8 @@ pub struct Instance {
     pub session: Option<Session>,
     pub spaces: HashMap<u64, Space>,
     pub swapchains: HashMap<u64, Swapchain>,
+    /// The levels of the profiles of foveation.
+    pub foveations: HashMap<u64, sys::FoveationLevelFB>,
     /// The rotation of the local space to the left, in radians.
     pub local_yaw: f32,
 }

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use openxr as xr;
-use xr::sys;
+use xr::sys::{self, Handle as _};
 
 use super::error::{XrError, call, check};
 use super::graphics::make_current;
@@ -29,6 +29,8 @@ pub(super) struct Kind {
     pub is_sampled: bool,
     pub size: [u32; 2],
     pub layers: u32,
+    /// The flags of images whose density the runtime can change.
+    pub foveation: Option<sys::SwapchainCreateFoveationFlagsFB>,
 }
 
 /// A swapchain.
@@ -59,19 +61,32 @@ impl Images {
         if kind.is_sampled || !kind.is_depth {
             usage |= xr::SwapchainUsageFlags::SAMPLED;
         }
-        let swapchain = session.create_swapchain(&xr::SwapchainCreateInfo {
+        let foveation = kind.foveation.map(|flags| sys::SwapchainCreateInfoFoveationFB {
+            ty: sys::SwapchainCreateInfoFoveationFB::TYPE,
+            next: std::ptr::null_mut(),
+            flags,
+        });
+        let info = sys::SwapchainCreateInfo {
+            ty: sys::SwapchainCreateInfo::TYPE,
+            next: foveation.as_ref().map_or(std::ptr::null(), |info| std::ptr::from_ref(info).cast()),
             create_flags: xr::SwapchainCreateFlags::EMPTY,
             usage_flags: usage,
-            format: kind.format,
+            format: kind.format.into(),
             sample_count: 1,
             width: kind.size[0],
             height: kind.size[1],
             face_count: 1,
             array_size: kind.layers,
             mip_count: 1,
-        });
+        };
+        let mut swapchain = sys::Swapchain::NULL;
+        let create = session.instance().fp().create_swapchain;
+        // SAFETY: the session is live, the structures state their types, and there is room for the result.
+        let result = unsafe { create(session.as_raw(), &info, &mut swapchain) };
         make_current(graphics)?;
-        let swapchain = call("xrCreateSwapchain", swapchain)?;
+        check("xrCreateSwapchain", result)?;
+        // SAFETY: the session has just made it.
+        let swapchain = unsafe { xr::Swapchain::from_raw(session.clone(), swapchain) };
         let images = swapchain.enumerate_images();
         make_current(graphics)?;
         let images = call("xrEnumerateSwapchainImages", images)?;
@@ -214,6 +229,11 @@ impl EyeImages {
                 Ok(EyeImages(vec![single()?, single()?]))
             }
         }
+    }
+
+    /// Returns the swapchains.
+    pub fn swapchains(&self) -> impl Iterator<Item = sys::Swapchain> {
+        self.0.iter().map(|images| images.swapchain.as_raw())
     }
 
     /// True if both eyes are layers of one swapchain.

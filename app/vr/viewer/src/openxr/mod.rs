@@ -13,6 +13,7 @@
 
 mod description;
 mod error;
+mod fixed_foveation;
 mod graphics;
 mod headset;
 mod images;

@@ -91,8 +91,9 @@ pub const PERIPHERY: [&str; 2] = ["periphery_psnr", "periphery_ssim"];
 pub const ALIKE: [&str; 2] = ["alike_psnr", "alike_ssim"];
 /// The same within 3 pixels of silhouettes.
 pub const SILHOUETTES: [&str; 2] = ["silhouettes_psnr", "silhouettes_ssim"];
-/// Flicker beyond the inset from a frame to one 4.5 cm ahead, against two full renders, out of 255.
-pub const PERIPHERY_FLICKER: &str = "periphery_flicker";
+/// Flicker beyond the inset from a frame to one 4.5 cm ahead, against two full renders, out of 255: of the eye that is
+/// rendered, and of the one that is synthesized.
+pub const PERIPHERY_FLICKER: [&str; 2] = ["periphery_flicker_rendered", "periphery_flicker"];
 
 /// Wall-clock time of patching alone in ms, with the image in the memory in which the patcher works.
 pub const PATCH_MS: &str = "patch_ms";

@@ -174,17 +174,18 @@ fn qualities(
     let other = pair.dominant.other();
     let next =
         EyePair { poses: pair.poses.map(|pose| pose.translated_local(Vec3::NEG_Z * views::STEP)), ..*pair };
-    let mut images: Vec<[RgbImage; 2]> = Vec::new();
-    let mut same = None;
+    // Here and one step ahead, of the eye that is rendered and of the one that is synthesized.
+    let (mut rendered, mut images): (Vec<[RgbImage; 2]>, Vec<[RgbImage; 2]>) = (Vec::new(), Vec::new());
     for way in &mut *ways {
-        let mut image = |pair: &EyePair| {
+        let mut both = |pair: &EyePair| {
             way.render(prepared, pair, frame)?;
-            same.get_or_insert_with(|| eye_image(frame, pair.dominant));
-            Ok::<_, StereoError>(eye_image(frame, other))
+            Ok::<_, StereoError>([pair.dominant, other].map(|eye| eye_image(frame, eye)))
         };
-        images.push([image(pair)?, image(&next)?]);
+        let ([a, b], [a_after, b_after]) = (both(pair)?, both(&next)?);
+        rendered.push([a, a_after]);
+        images.push([b, b_after]);
     }
-    let [truth, after] = &images[0];
+    let (truth, same) = (&images[0][0], &rendered[0][0]);
     let fovea = fovea(pair);
     let medium = ways[FoveationLevel::Medium as usize].levels(pair)?;
     let quality =
@@ -212,17 +213,21 @@ fn qualities(
         quality(measurement, metric::PERIPHERY, [image, truth], &periphery)?;
         quality(measurement, metric::ALIKE, [image, alike], &periphery)?;
         quality(measurement, metric::SILHOUETTES, [image, alike], &silhouettes)?;
-        // The meter's mask is the part that is told apart.
-        let meter = FlickerMeter::new([truth, after], [&periphery, &periphery])?;
-        let flicker = meter.flicker([&images[at][0], &images[at][1]])?;
-        flicker.holes.into_iter().for_each(|value| measurement.push(metric::PERIPHERY_FLICKER, value));
+        let both = [(&rendered, pair.dominant), (&images, other)];
+        for ((images, eye), name) in both.into_iter().zip(metric::PERIPHERY_FLICKER) {
+            let periphery = self::periphery(&levels.composition(eye));
+            // The meter's mask is the part that is told apart.
+            let meter = FlickerMeter::new(images[0].each_ref(), [&periphery, &periphery])?;
+            let flicker = meter.flicker(images[at].each_ref())?;
+            flicker.holes.into_iter().for_each(|value| measurement.push(name, value));
+        }
     }
-    if let (Some(same), Some(measurement)) = (same, measurements.last_mut()) {
+    if let Some(measurement) = measurements.last_mut() {
         let periphery = periphery(&medium.composition(other));
         let silhouettes: Vec<bool> = periphery.iter().zip(near_silhouettes).map(|(a, b)| *a && *b).collect();
-        quality(measurement, metric::FOVEA, [&same, truth], &fovea)?;
-        quality(measurement, metric::PERIPHERY, [&same, truth], &periphery)?;
-        quality(measurement, metric::SILHOUETTES, [&same, truth], &silhouettes)?;
+        quality(measurement, metric::FOVEA, [same, truth], &fovea)?;
+        quality(measurement, metric::PERIPHERY, [same, truth], &periphery)?;
+        quality(measurement, metric::SILHOUETTES, [same, truth], &silhouettes)?;
     }
     Ok(())
 }

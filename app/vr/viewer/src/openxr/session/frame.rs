@@ -14,7 +14,7 @@ use crate::openxr::error::{XrError, check};
 use crate::openxr::images::EyeImages;
 use crate::openxr::motion::{MotionInfo, ends};
 use crate::viewer::Viewer;
-use yoro::eyes::{Eye, EyePair, Pose};
+use yoro::eyes::{Eye, EyePair, Levels, Pose};
 use yoro_context::Graphics;
 use yoro_lenses::{Board, board_metres};
 use yoro_render::DepthCopy;
@@ -94,6 +94,11 @@ impl Session {
         let axes = native.wide.poses.map(|pose| viewer.place(pose).forward());
         let eyes = InScene { levels, axes, place: viewer.place(Pose::IDENTITY) };
 
+        let composed = self.own_levels(viewer, &eyes);
+        if let Some(foveation) = &mut self.fixed_foveation {
+            let level = if composed.is_some() { viewer.settings().foveation } else { None };
+            foveation.set(graphics, &self.session, &self.wide.eyes, level.unwrap_or_default())?;
+        }
         self.wide.acquire(graphics)?;
         self.inset.as_mut().map_or(Ok(()), |inset| inset.acquire(graphics))?;
         let leaves_frames = viewer.leaves_frames_to_runtime();
@@ -111,7 +116,7 @@ impl Session {
                 .map(|(own, pair)| targets(own, &pair))
                 .transpose()?,
         };
-        let rendered = self.render_eyes(viewer, &eyes, &images)?;
+        let rendered = self.render_eyes(viewer, &eyes, composed, &images)?;
         if capture && rendered.is_some() {
             let eyes = images.wide.map(|image| self.gl.read_rgba8(&image.color));
             *captured = Some(Capture { eyes, pair: levels.wide });
@@ -124,17 +129,22 @@ impl Session {
         Ok(Layers { eyes: Some(Submitted { levels: shown, drawn }), panel })
     }
 
-    /// Renders both eyes into images; `None` if the viewer cannot.
+    /// Returns the levels of which this program composes the eyes, if it does.
+    fn own_levels(&self, viewer: &Viewer, InScene { levels, axes, .. }: &InScene) -> Option<Levels> {
+        // A runtime that shows insets composes them itself. Of one view, an API layer may need colour and depth of one size.
+        let is_stereo = self.views == xr::ViewConfigurationType::PRIMARY_STEREO;
+        if is_stereo { viewer.levels(&levels.wide, *axes) } else { None }
+    }
+
+    /// Renders both eyes into images, by way of these levels if there are any; `None` if the viewer cannot.
     fn render_eyes(
         &mut self,
         viewer: &mut Viewer,
-        InScene { levels, axes, place }: &InScene,
+        InScene { levels, place, .. }: &InScene,
+        own: Option<Levels>,
         images: &LevelTargets<'static>,
     ) -> Result<Option<Drawn>, XrError> {
         let eyes = self.storage.begin(*images)?;
-        // A runtime that shows insets composes them itself. Of one view, an API layer may need colour and depth of one size.
-        let is_stereo = self.views == xr::ViewConfigurationType::PRIMARY_STEREO;
-        let own = if is_stereo { viewer.levels(&levels.wide, *axes) } else { None };
         let motion = self.motion.as_ref().filter(|_| viewer.leaves_frames_to_runtime());
         let copy = self.depth_copy.as_ref();
         let (mut depth_size, mut has_motion) = (None, false);

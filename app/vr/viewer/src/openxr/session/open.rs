@@ -10,6 +10,7 @@ use crate::openxr::description::{Description, Options};
 #[cfg(target_os = "android")]
 use crate::openxr::error::check;
 use crate::openxr::error::{XrError, call, optional};
+use crate::openxr::fixed_foveation::{self, FixedFoveation};
 use crate::openxr::graphics::{self, make_current};
 use crate::openxr::images::{EyeImages, Images, Kind};
 use crate::openxr::input::Input;
@@ -94,6 +95,7 @@ impl Session {
             motion,
             depth_copy: depth.map(|(_, copy)| copy),
             composed: None,
+            fixed_foveation: FixedFoveation::new(&session),
             panel,
             storage,
             mask,
@@ -146,6 +148,7 @@ fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance,
     enabled.bd_controller_interaction = offered.bd_controller_interaction;
     enabled.varjo_quad_views = offered.varjo_quad_views;
     motion::enable(&offered, &mut enabled);
+    fixed_foveation::enable(&offered, &mut enabled);
     let create = |minor| {
         let application = xr::ApplicationInfo {
             application_name: "yoro",
@@ -291,8 +294,9 @@ impl FrameImages {
         let color = storage::choose(&storage::COLOR_FORMATS, &formats).ok_or_else(|| {
             XrError::Nonsense("offers no format of images that OpenGL ES can draw to".into())
         })?;
+        let foveation = fixed_foveation::flags(session, gl);
         let level = |LevelSize { recommended, size }: LevelSize| {
-            let kind = Kind { format: color, is_depth: false, is_sampled: true, size, layers: 2 };
+            let kind = Kind { format: color, is_depth: false, is_sampled: true, size, layers: 2, foveation };
             let eyes = EyeImages::new(graphics, gl, session, kind)?;
             Ok::<_, XrError>(RuntimeLevel { eyes, depth: None, recommended, size })
         };
@@ -309,7 +313,7 @@ impl FrameImages {
             graphics,
             gl,
             session,
-            Kind { format: color, is_depth: false, is_sampled: true, size, layers: 1 },
+            Kind { format: color, is_depth: false, is_sampled: true, size, layers: 1, foveation: None },
         );
         let panel = optional("there is no HUD", panel)?.map(|images| PanelImages { images, version: None });
         let mut levels = levels.into_iter();
@@ -331,7 +335,8 @@ fn make_depth(
         return Ok(None);
     };
     let images = |level: &RuntimeLevel| {
-        let kind = Kind { format, is_depth: true, is_sampled: false, size: level.size, layers: 2 };
+        let (size, foveation) = (level.size, None);
+        let kind = Kind { format, is_depth: true, is_sampled: false, size, layers: 2, foveation };
         EyeImages::new(graphics, gl, session, kind)
     };
     let (images, copy) = (levels.iter().map(images).collect::<Result<Vec<_>, _>>()?, DepthCopy::new(gl)?);

@@ -8,6 +8,7 @@ use crate::error::ViewerError;
 use crate::event::Event;
 use crate::openxr::description::{Description, Frame};
 use crate::openxr::error::{XrError, call};
+use crate::openxr::fixed_foveation::FixedFoveation;
 use crate::openxr::images::{EyeImages, Images};
 use crate::openxr::input::Input;
 use crate::openxr::mask::Mask;
@@ -76,6 +77,8 @@ pub struct Session {
     pub(super) mask: Option<Mask>,
     /// Made when the eyes are first composed of levels by this program.
     pub(super) composed: Option<LevelFrame>,
+    /// `None` if the runtime has no foveation of its own.
+    pub(super) fixed_foveation: Option<FixedFoveation>,
     pub(super) depth_copy: Option<DepthCopy>,
     /// `None` unless the runtime makes frames.
     pub(super) motion: Option<MotionImages>,
