@@ -14,7 +14,8 @@ use yoro_gl::{
     ShaderSource, Shape, Texture,
 };
 use yoro_render::stereo::{
-    self, DepthTarget, Method, MotionTarget, NearFieldPolicy, Pipeline, StereoFrame, StereoOptions,
+    self, DepthTarget, FramesBetween, Method, MotionTarget, NearFieldPolicy, Pipeline, StereoFrame,
+    StereoOptions,
 };
 use yoro_render::{DepthCopy, NearestDepth, PASSES, PreparedScene, RenderSettings, TilePart};
 use yoro_tests::{on_every_backend, scene};
@@ -87,7 +88,9 @@ fn frames() -> Vec<(Method, StereoOptions)> {
     let mut frames: Vec<_> = methods.filter_map(Contender::method).collect();
     let synthesis = StereoOptions { policy: None, ..StereoOptions::default() };
     for method in [Method::Conventional, Method::Synthesized] {
-        frames.push((method, StereoOptions { half_rate: true, ..synthesis }));
+        for frames_between in [FramesBetween::Method, FramesBetween::Runtime] {
+            frames.push((method, StereoOptions { frames_between, ..synthesis }));
+        }
     }
     frames.push((Method::Synthesized, StereoOptions { near_field: Some(3.0), ..synthesis }));
     frames.push((Method::Synthesized, StereoOptions { guard_band: GuardBand::Auto(0.1), ..synthesis }));
@@ -139,7 +142,7 @@ fn record(
         }
         recorder.start();
         method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).unwrap();
-        if options.half_rate {
+        if options.frames_between == FramesBetween::Method {
             assert!(method.show_again(&pair, &to, 0.5).unwrap());
         }
         all.extend(pieces(&recorder.take(), &Assumed::default()));

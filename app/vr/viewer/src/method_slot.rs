@@ -11,7 +11,7 @@ use yoro::choice::Cost;
 use yoro::eyes::Foveation;
 use yoro_gl::{Context, GlError};
 use yoro_render::stereo::{
-    Auto, EyeLevels, GuardBandUse, ImBufferSize, LevelTargets, Method, MethodChoice, Pipeline,
+    Auto, EyeLevels, FramesBetween, GuardBandUse, ImBufferSize, LevelTargets, Method, MethodChoice, Pipeline,
     SelectedMethod, StereoMethod as _, StereoOptions, Substituted,
 };
 use yoro_settings::{FrameRate, Settings};
@@ -140,7 +140,9 @@ impl MethodSlot {
     /// Returns the settings' options with the pipeline and the ImBuffer in use.
     fn options(&self, settings: &Settings) -> StereoOptions {
         let mut options = stereo_options(settings, self.pipeline);
-        options.half_rate &= !self.runtime_makes_frames;
+        if self.runtime_makes_frames {
+            options.frames_between = FramesBetween::Runtime;
+        }
         if self.runtime_shows_insets {
             options.inset = options.inset.or(Some(Foveation::MEDIUM.nearest));
         }

@@ -2,7 +2,9 @@
 
 use yoro_gl::Capabilities;
 use yoro_render::RenderSettings;
-use yoro_render::stereo::{NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions};
+use yoro_render::stereo::{
+    FramesBetween, NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions,
+};
 use yoro_settings::{FrameRate, MSAA, Settings};
 
 /// Returns the renderer's settings for those of the viewer. If the driver is known and lacks the number of samples, it is
@@ -34,7 +36,10 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
         guard_band: settings.guard_band.unwrap_or(options.guard_band),
         near_field: settings.near_field,
         policy: settings.switch.then(NearFieldPolicy::default),
-        half_rate: settings.frame_rate == FrameRate::Half,
+        frames_between: match settings.frame_rate {
+            FrameRate::Half => FramesBetween::Method,
+            FrameRate::Full | FrameRate::Auto => FramesBetween::Nobody,
+        },
         split_disparity: settings.split_disparity,
         inset: settings.foveation.unwrap_or_default().foveation().map(|foveation| foveation.nearest),
     }

@@ -4,7 +4,7 @@ use super::contender::Contender;
 use super::motion::Motion;
 use super::record::Conditions;
 use super::runner::WAYS;
-use yoro::eyes::EyeOptions;
+use yoro::eyes::{EyeOptions, FoveationLevel};
 use yoro_assets::ShadingStyle;
 use yoro_estimate::Device;
 use yoro_render::RenderSettings;
@@ -32,8 +32,8 @@ pub enum Measure {
     Patchers,
     /// One render shown at another pose.
     Reprojection(Displaced),
-    /// The frame between two renders, at 72 frames per second.
-    HalfRate(Motion),
+    /// The frame between two renders, at 72 frames per second, by methods with levels or without.
+    HalfRate(Motion, FoveationLevel),
     /// A stream whose frames are shown this number of frames later, at 72 frames per second.
     Stream(usize),
     /// Instructions that `gather` executes: an estimate for a GPU that is not available here.
@@ -98,7 +98,7 @@ impl Job {
         if let Measure::Stream(_) = self.measure {
             return (self.frames * 3 * STREAM_QUANTIZERS.len()) as u64;
         }
-        if let Measure::Executed(_) | Measure::Reprojection(_) | Measure::HalfRate(_) = self.measure {
+        if let Measure::Executed(_) | Measure::Reprojection(_) | Measure::HalfRate(..) = self.measure {
             return self.frames as u64;
         }
         if self.measure == Measure::Foveation {

@@ -13,6 +13,8 @@ pub enum Motion {
     Walk,
     /// Not moving.
     Still,
+    /// Stepping aside, to the right, at 1 m/s.
+    Strafe,
     /// Turning to the left at 60 degrees per second, about a neck 10 cm behind the eyes.
     Turn,
     /// Leaning forwards and back by 20 cm, with a period of 1.5 seconds: up to 0.84 m/s.
@@ -26,6 +28,7 @@ impl Motion {
             Motion::Sway => "sway",
             Motion::Walk => "walk",
             Motion::Still => "still",
+            Motion::Strafe => "strafe",
             Motion::Turn => "turn",
             Motion::Reach => "reach",
         }
@@ -43,6 +46,7 @@ impl Motion {
                 let turn = Quat::from_rotation_y(-(9.5 * wave).to_radians());
                 Some(Pose { orientation: turn * moved.orientation, ..moved })
             }
+            Motion::Strafe => Some(from.translated_local(Vec3::X * seconds)),
             Motion::Turn => {
                 let neck = from.translated_local(Vec3::Z * 0.1);
                 let turn = Quat::from_rotation_y((60.0 * seconds - 20.0).to_radians());

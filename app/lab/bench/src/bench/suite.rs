@@ -11,7 +11,7 @@ use super::motion::Motion;
 use super::record::Conditions;
 use super::scenes::LazyObject;
 use crate::machine::Parameter;
-use yoro::eyes::EyeOptions;
+use yoro::eyes::{EyeOptions, FoveationLevel};
 use yoro_assets::ShadingStyle;
 use yoro_estimate::DEVICES;
 use yoro_render::stereo::Pipeline;
@@ -186,7 +186,9 @@ impl Choices {
             Suite::Reprojection => {
                 self.reprojection(sweep(Measure::Reprojection(Displaced::Canted), Vec::new()))
             }
-            Suite::HalfRate => self.half_rate(sweep(Measure::HalfRate(Motion::Still), Vec::new())),
+            Suite::HalfRate => {
+                self.half_rate(sweep(Measure::HalfRate(Motion::Still, FoveationLevel::Off), Vec::new()))
+            }
             Suite::Foveation => self.foveation(sweep(Measure::Foveation, Vec::new()), &every),
             Suite::Stream => self.stream(sweep(Measure::Stream(0), Vec::new())),
             Suite::ShaderCost if self.whole_frames => {
@@ -264,13 +266,21 @@ impl Choices {
     }
 
     fn half_rate(&self, sweep: Sweep) -> anyhow::Result<Vec<Job>> {
-        let motions = [Motion::Still, Motion::Walk, Motion::Turn, Motion::Reach];
+        let whole = [Motion::Still, Motion::Walk, Motion::Strafe, Motion::Turn, Motion::Reach]
+            .map(|motion| (motion, FoveationLevel::Off));
+        let motions = whole.into_iter().chain([(Motion::Walk, FoveationLevel::Medium)]);
         let scenes = if self.quick { &MOVING_SCENES[..1] } else { &MOVING_SCENES };
-        sweep.over(self.scenes(scenes), motions, |job, motion| {
+        sweep.over(self.scenes(scenes), motions, |job, (motion, level)| {
             // Ways of making a frame take part, not methods.
             job.contenders.clear();
-            job.measure = Measure::HalfRate(motion);
-            job.conditions.label = Some(motion.name().to_owned());
+            job.measure = Measure::HalfRate(motion, level);
+            job.conditions.label = Some(match level {
+                FoveationLevel::Off => motion.name().to_owned(),
+                level => {
+                    job.eyes.fov_y = FOVEATED_DEGREES[1].to_radians();
+                    format!("{}, foveation {}, {} degrees", motion.name(), level.name(), FOVEATED_DEGREES[1])
+                }
+            });
         })
     }
 

@@ -10,7 +10,7 @@ use web_time::Instant;
 
 use super::levels::{EyeLevels, LevelMethods, LevelTargets};
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod, Substituted};
-use super::options::{Method, MethodChoice, StereoOptions};
+use super::options::{FramesBetween, Method, MethodChoice, StereoOptions};
 use crate::view::{GpuScene, RenderSettings, Renderer};
 use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, Way};
 use yoro::eyes::{EyePair, EyesError, GuardBand};
@@ -61,7 +61,9 @@ impl SelectedMethod {
         let kind = match choice {
             MethodChoice::Named(method) => named(method)?,
             // Turns of two methods would need renders of both.
-            MethodChoice::Auto if options.half_rate => named(Method::Synthesized)?,
+            MethodChoice::Auto if options.frames_between == FramesBetween::Method => {
+                named(Method::Synthesized)?
+            }
             MethodChoice::Auto => Kind::Auto(Box::new(Auto::new(gl, settings, options)?)),
         };
         Ok(SelectedMethod {
@@ -116,7 +118,10 @@ impl SelectedMethod {
         let made = match self.both.take() {
             Some(made) => made,
             None => {
-                let options = StereoOptions { half_rate: false, ..self.options };
+                let mut options = self.options;
+                if options.frames_between == FramesBetween::Method {
+                    options.frames_between = FramesBetween::Nobody;
+                }
                 LevelMethods::new(&self.gl, Method::Conventional, &self.settings, &options)?
             }
         };

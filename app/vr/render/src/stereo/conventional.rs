@@ -3,7 +3,8 @@
 use super::frame::Frame;
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod};
 use super::motion::write_rendered;
-use crate::view::{DepthImage, GpuScene, Layout, Renderer, Targets, VectorPass};
+use super::options::{FramesBetween, StereoOptions};
+use crate::view::{DepthImage, GpuScene, Layout, NearestDepth, Renderer, Targets, VectorPass};
 use yoro::eyes::Eye;
 use yoro_gl::GlError;
 
@@ -11,13 +12,20 @@ use yoro_gl::GlError;
 #[derive(Default)]
 pub struct Conventional {
     targets: Option<Targets>,
-    /// Made when vectors are first asked for.
+    /// True if a runtime makes frames of its motion vectors.
+    has_vectors: bool,
     vectors: Option<VectorPass>,
     /// True if the last frame's vectors were written.
     has_motion: bool,
 }
 
 impl Conventional {
+    /// Makes the method without what depends on the renderer.
+    pub(super) fn new(options: &StereoOptions) -> Conventional {
+        let has_vectors = options.frames_between == FramesBetween::Runtime;
+        Conventional { has_vectors, ..Conventional::default() }
+    }
+
     /// Renders both eyes, the dominant one last. Calls `rendered` after each that `reads_depth`, with its depth.
     pub(super) fn render_eyes(
         &mut self,
@@ -39,11 +47,7 @@ impl Conventional {
             if depth {
                 let depth = targets.depth(view.size, Eye::Left, [0, 0]);
                 frame.write_depth(eye, &depth);
-                if frame.to(eye).motion.is_some() {
-                    let pass = match &mut self.vectors {
-                        Some(pass) => pass,
-                        slot => slot.insert(VectorPass::new(&frame.renderer.gl)?),
-                    };
+                if let Some(pass) = self.vectors.as_mut().filter(|_| frame.to(eye).motion.is_some()) {
                     self.has_motion = write_rendered(pass, frame, eye, &depth)?;
                 }
                 if reads_depth(eye) {
@@ -59,10 +63,12 @@ impl Conventional {
         self.has_motion
     }
 
-    /// Makes the targets, unless they are made already.
+    /// Makes targets and passes, unless they are made already.
     pub(super) fn make(&mut self, renderer: &Renderer) -> Result<(), GlError> {
         if self.targets.is_none() {
             self.targets = Some(renderer.targets(Layout::Single)?);
+            let is_pair = renderer.nearest_depth() == NearestDepth::Carried;
+            self.vectors = self.has_vectors.then(|| VectorPass::new(&renderer.gl, is_pair)).transpose()?;
         }
         Ok(())
     }

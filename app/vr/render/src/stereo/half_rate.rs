@@ -32,12 +32,19 @@ pub struct HalfRate {
     /// True if each eye has a render of its own.
     each: bool,
     renders: Vec<Render>,
-    /// True if the depth of the renders is that of two samples.
+    /// True if the depth of the renders is that of two samples. Where a texture holds one, as after extrapolation, the other
+    /// reads as 0, the farthest.
     pairs: bool,
-    vectors: Option<VectorPass>,
-    extrapolator: Option<Extrapolator>,
-    /// Synthesis of rendered sources and of extrapolated ones, without and with depth, each made when first needed.
-    synthesis: [[Option<Synthesizer>; 2]; 2],
+    /// Made if anything moves.
+    moving: Option<Moving>,
+    /// Synthesis without and with depth; the latter is made with the first frame that wants it.
+    synthesis: [Option<Synthesizer>; 2],
+}
+
+/// What surfaces that move need.
+struct Moving {
+    vectors: VectorPass,
+    extrapolator: Extrapolator,
 }
 
 /// The images of a rendered view.
@@ -45,9 +52,10 @@ struct Render {
     targets: Targets,
     /// The view in the targets; `None` before the first frame.
     view: Option<View>,
-    /// Vectors since the view before, with that view; `None` if nothing in the view moves, or there was none before.
-    vectors: Option<(RenderTarget, View)>,
-    has_vectors: bool,
+    /// Made if anything moves.
+    vectors: Option<RenderTarget>,
+    /// The view before, if there are vectors since; `None` if nothing in the view moves, or there was none before.
+    former: Option<View>,
 }
 
 /// The synthesis, and the image of an eye whose depth is wanted.
@@ -77,24 +85,13 @@ impl Render {
         view: &View,
         former: Option<View>,
     ) -> Result<(), GlError> {
-        self.has_vectors = false;
-        let Some(former) = former.filter(|_| scene.is_moving_in(view)) else { return Ok(()) };
-        let (target, then) = match &mut self.vectors {
-            Some(made) => made,
-            slot => {
-                let formats = [(Format::Rgba16F, Filter::Nearest)];
-                let gl = pass.context();
-                slot.insert((RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth24))?, former))
-            }
-        };
-        *then = former;
+        self.former = former.filter(|_| scene.is_moving_in(view));
+        let Some((target, then)) = self.vectors.as_mut().zip(self.former) else { return Ok(()) };
         target.resize(view.size)?;
-        let step = Step { view: *view, now: *view, then: former, ndc: Ndc::ZeroToOne };
+        let step = Step { view: *view, now: *view, then, ndc: Ndc::ZeroToOne };
         pass.draw_moving(scene, &step)?;
         let depth = self.targets.depth(view.size, Eye::Left, [0, 0]);
-        pass.write((&depth, view), &step, [0, 0], &Destination::whole(target))?;
-        self.has_vectors = true;
-        Ok(())
+        pass.write((&depth, view), &step, [0, 0], &Destination::whole(target))
     }
 }
 
@@ -117,55 +114,47 @@ impl HalfRate {
             each,
             renders: Vec::new(),
             pairs: false,
-            vectors: None,
-            extrapolator: None,
+            moving: None,
             synthesis: Default::default(),
         })
     }
 
-    /// Returns the views to render: what each eye, or both, see now, and what they will see after the head's motion.
-    fn source_views(&self, frame: &Frame) -> Result<Vec<View>, EyesError> {
+    /// Returns the view of a render: what its eye, or both, see now, and what they will see after the head's motion.
+    fn source_view(&self, frame: &Frame, render: usize) -> Result<View, EyesError> {
         let nearest = frame.level().nearest.unwrap_or(match self.guard_band {
             GuardBand::Distance(metres) | GuardBand::Auto(metres) => metres,
             GuardBand::None | GuardBand::Pixels(_) => NEAREST,
         });
-        let guarded = |view: &View| Ok(self.motion.guarded(view, nearest)?.view);
-        if self.each {
-            return Eye::BOTH.map(|eye| guarded(&frame.pair.view(eye))).into_iter().collect();
-        }
-        Ok(vec![guarded(&frame.synthesis_views(self.guard_band)?.source)?])
+        let seen = match self.each {
+            true => frame.pair.view(Eye::BOTH[render]),
+            false => frame.synthesis_views(self.guard_band)?.source,
+        };
+        Ok(self.motion.guarded(&seen, nearest)?.view)
     }
 
     /// Synthesizes both eyes from the renders, after a part of the step between the last two of them.
     fn show(&mut self, pair: &EyePair, to: &[EyeTarget; 2], ahead: f32) -> Result<(), StereoError> {
         let eyes = reversed(pair);
-        let HalfRate { gl, each, renders, pairs, extrapolator, synthesis, .. } = self;
+        let HalfRate { gl, each, renders, pairs, moving, synthesis, .. } = self;
         for (i, render) in renders.iter().enumerate() {
             let Some(source) = &render.view else { return Ok(()) };
             let targets = &render.targets;
             let color = targets.developed.as_ref().unwrap_or(targets.color());
             let depth = targets.depth(source.size, Eye::Left, [0, 0]);
             let mut images = Source::new(color.color(0).raw(), depth.texture.raw());
-            let vectors = render.vectors.as_ref().filter(|_| render.has_vectors && ahead > 0.0);
-            if let Some((vectors, former)) = vectors {
-                let extrapolator = match &mut *extrapolator {
-                    Some(made) => made,
-                    slot => {
-                        let options = Options { depth_pairs: *pairs, ..Options::default() };
-                        slot.insert(Extrapolator::new(gl, &options)?)
-                    }
-                };
+            let vectors = render.vectors.as_ref().zip(render.former.as_ref()).filter(|_| ahead > 0.0);
+            if let Some(((vectors, former), moving)) = vectors.zip(moving.as_mut()) {
                 let step = Extrapolation::new(source, former, Ndc::ZeroToOne, f64::from(ahead))?;
-                images = extrapolator.extrapolate(images, (vectors.color(0).raw(), source.size), &step)?;
+                let vectors = (vectors.color(0).raw(), source.size);
+                images = moving.extrapolator.extrapolate(images, vectors, &step)?;
             }
-            let is_pair = *pairs && vectors.is_none();
             for eye in Eye::BOTH.into_iter().filter(|eye| !*each || eye.index() == i) {
                 let to = &to[eye.index()];
                 let warp = PoseWarp::new(source, &eyes.view(eye))?;
-                let slot = &mut synthesis[usize::from(is_pair)][usize::from(to.depth.is_some())];
+                let slot = &mut synthesis[usize::from(to.depth.is_some())];
                 let Synthesizer { any_view, image } = match slot {
                     Some(made) => made,
-                    None => slot.insert(Synthesizer::new(gl, is_pair, to.depth.is_some())?),
+                    None => slot.insert(Synthesizer::new(gl, *pairs, to.depth.is_some())?),
                 };
                 let Some(image) = image else {
                     any_view.synthesize(images, &warp, &to.color)?;
@@ -189,12 +178,22 @@ impl StereoMethod for HalfRate {
         if self.renders.is_empty() {
             for _ in 0..1 + usize::from(self.each) {
                 let targets = renderer.targets(Layout::Single)?;
-                self.renders.push(Render { targets, view: None, vectors: None, has_vectors: false });
+                self.renders.push(Render { targets, view: None, vectors: None, former: None });
             }
             self.pairs = renderer.nearest_depth() == NearestDepth::Carried;
+            self.synthesis[0] = Some(Synthesizer::new(&self.gl, self.pairs, false)?);
         }
-        if scene.moves() && self.vectors.is_none() {
-            self.vectors = Some(VectorPass::new(&self.gl)?);
+        if scene.moves() && self.moving.is_none() {
+            let options = Options { depth_pairs: self.pairs, ..Options::default() };
+            self.moving = Some(Moving {
+                vectors: VectorPass::new(&self.gl, self.pairs)?,
+                extrapolator: Extrapolator::new(&self.gl, &options)?,
+            });
+            for render in &mut self.renders {
+                let formats = [(Format::Rgba16F, Filter::Nearest)];
+                let target = RenderTarget::new(&self.gl, [1, 1], &formats, Some(Format::Depth24))?;
+                render.vectors = Some(target);
+            }
         }
         Ok(())
     }
@@ -208,8 +207,10 @@ impl StereoMethod for HalfRate {
     ) -> Result<(), StereoError> {
         self.prepare(renderer, scene)?;
         let frame = Frame::new(renderer, scene, level, to)?;
-        let (views, renderer) = (self.source_views(&frame)?, frame.renderer);
-        for (render, view) in self.renders.iter_mut().zip(&views) {
+        let renderer = frame.renderer;
+        for i in 0..self.renders.len() {
+            let view = &self.source_view(&frame, i)?;
+            let render = &mut self.renders[i];
             let former = render.view.take();
             let targets = &mut render.targets;
             renderer.draw_all(targets, &frame.scene, std::slice::from_ref(view), true, None)?;
@@ -217,8 +218,8 @@ impl StereoMethod for HalfRate {
                 let to = Destination::whole(targets.picture(view.size)?);
                 renderer.develop(targets, view, Eye::Left, [0, 0], &to, None);
             }
-            if let Some(pass) = &mut self.vectors {
-                render.write_vectors(pass, scene, view, former)?;
+            if let Some(moving) = &mut self.moving {
+                render.write_vectors(&mut moving.vectors, scene, view, former)?;
             }
             render.view = Some(*view);
         }
@@ -244,7 +245,7 @@ mod tests {
     use yoro_context::{Backend, Headless};
 
     use super::super::method::StereoFrame;
-    use super::super::options::{Method, StereoOptions};
+    use super::super::options::{FramesBetween, Method, StereoOptions};
     use super::super::tests::{Rig, local, pair};
     use super::*;
     use crate::view::RenderSettings;
@@ -274,7 +275,7 @@ mod tests {
     }
 
     fn check(gl: &Rc<Context>, settings: &RenderSettings) {
-        let options = StereoOptions { half_rate: true, ..StereoOptions::default() };
+        let options = StereoOptions { frames_between: FramesBetween::Method, ..StereoOptions::default() };
         let mut rig = Rig::new(gl, settings);
         let create = |method, options| super::super::create(gl, method, settings, options).unwrap();
         let every = StereoOptions::default();

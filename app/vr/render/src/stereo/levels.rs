@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use super::auto::SelectedMethod;
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoFrame, StereoMethod};
-use super::options::{Method, StereoOptions};
+use super::options::{FramesBetween, Method, StereoOptions};
 use crate::view::{GpuScene, RenderSettings, Renderer};
 use yoro::eyes::{Eye, EyePair, Levels};
 use yoro::opengl::{Composer, GlState, InsetImage, LevelImage, LevelImages};
@@ -83,10 +83,16 @@ impl LevelMethods {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<LevelMethods, GlError> {
-        let create = || super::create(gl, method, settings, options);
+        let create = |options| super::create(gl, method, settings, options);
+        // A runtime gets motion vectors of the wide level alone.
+        let frames_between = match options.frames_between {
+            FramesBetween::Runtime => FramesBetween::Nobody,
+            other => other,
+        };
+        let inset = StereoOptions { frames_between, ..*options };
         Ok(LevelMethods {
-            wide: create()?,
-            inset: options.inset.map(|_| create()).transpose()?,
+            wide: create(options)?,
+            inset: options.inset.map(|_| create(&inset)).transpose()?,
             nearest: options.inset.unwrap_or(f32::INFINITY),
         })
     }

@@ -45,7 +45,7 @@ pub use method::{
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
-pub use options::{Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
+pub use options::{FramesBetween, Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 pub use pipeline::Synthesis;
 use shading_reprojection::ShadingReprojection;
@@ -64,15 +64,16 @@ pub fn create(
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
     settings.supports(method, gl.capabilities())?;
+    let is_half = options.frames_between == FramesBetween::Method;
     Ok(match method {
-        Method::Conventional if options.half_rate => Box::new(HalfRate::new(gl, options, true)?),
-        Method::Conventional => Box::new(Conventional::default()),
+        Method::Conventional if is_half => Box::new(HalfRate::new(gl, options, true)?),
+        Method::Conventional => Box::new(Conventional::new(options)),
         Method::Instanced => Box::new(SinglePass::instanced(gl)),
         Method::Multiview => Box::new(SinglePass::new(Layout::Layered)),
         Method::ShadingReprojection => Box::new(ShadingReprojection::default()),
         Method::Hybrid => Box::new(Hybrid::new(options.split_disparity)),
         Method::Mono => Box::new(Mono::default()),
-        Method::Synthesized if options.half_rate => Box::new(HalfRate::new(gl, options, false)?),
+        Method::Synthesized if is_half => Box::new(HalfRate::new(gl, options, false)?),
         Method::Synthesized => Box::new(Synthesized::new(gl, options)?),
     })
 }

@@ -62,11 +62,12 @@ pub(super) struct SynthesizedMotion {
 }
 
 impl SynthesizedMotion {
-    pub(super) fn new(gl: &Rc<Context>) -> Result<SynthesizedMotion, GlError> {
+    /// Makes it for views with one depth a pixel, or with a pair.
+    pub(super) fn new(gl: &Rc<Context>, is_pair: bool) -> Result<SynthesizedMotion, GlError> {
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         let outputs = Outputs { depth: true, ..Outputs::default() };
         Ok(SynthesizedMotion {
-            pass: VectorPass::new(gl)?,
+            pass: VectorPass::new(gl, is_pair)?,
             source: RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F))?,
             motion: Motion::new(gl, &Options::default(), outputs)?,
         })

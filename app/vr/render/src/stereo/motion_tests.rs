@@ -1,12 +1,15 @@
-//! Motion vectors of both eyes: those that are synthesized against those of two renders.
+//! Motion vectors of both eyes: those that are synthesized against those of two renders; and what half the rate compiles.
+
+use std::cell::Cell;
 
 use glam::{Quat, Vec3};
 
 use super::tests::{Rig, local, moving_scene, pair};
 use super::*;
+use crate::view::{NearestDepth, RenderSettings};
 use yoro::eyes::{DepthConvention, Eye, EyePair, Ndc, Pose};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Destination, Filter, Format, RenderTarget};
+use yoro_gl::{Capabilities, Destination, Event, Filter, Format, Observer, RenderTarget};
 
 const SIZE: [u32; 2] = [80, 60];
 
@@ -49,7 +52,8 @@ fn vectors_of_both_eyes_are_those_of_two_renders() {
         (Eye::Right, DepthConvention::Reversed, Ndc::ZeroToOne),
     ] {
         let settings = local();
-        let create = |method| create(gl, method, &settings, &StereoOptions::default()).unwrap();
+        let options = StereoOptions { frames_between: FramesBetween::Runtime, ..StereoOptions::default() };
+        let create = |method| create(gl, method, &settings, &options).unwrap();
         let mut rig = Rig::of(gl, &settings, moving_scene());
         let now = pair(dominant, convention);
         let turn = Quat::from_rotation_y(0.02);
@@ -100,4 +104,70 @@ fn vectors_of_both_eyes_are_those_of_two_renders() {
         assert!(!one.report().has_motion);
     }
     assert_eq!(gl.take_errors(), None);
+}
+
+/// Counts the programs that are made.
+struct Counted(Rc<Cell<usize>>);
+
+impl Observer for Counted {
+    fn observe(&mut self, _: &Context, event: &Event) {
+        self.0.set(self.0.get() + usize::from(matches!(event, Event::ProgramMade(_))));
+    }
+}
+
+/// At half the rate, frames compile nothing that can be prepared, and allocate nothing once each kind of frame was shown:
+/// with one depth a pixel and with two, by either eye's render and by both, whoever makes the frames between.
+#[test]
+fn frames_of_half_the_rate_compile_and_allocate_nothing() {
+    let limits: [(fn(&mut Capabilities), NearestDepth); 2] = [
+        (|capabilities| capabilities.tile_samples = false, NearestDepth::Read),
+        (|capabilities| capabilities.multisample_textures = false, NearestDepth::Carried),
+    ];
+    for (limit, way) in limits {
+        let head = Headless::open_limited(Backend::Egl, limit).unwrap();
+        let gl = head.gl();
+        let settings = RenderSettings { msaa: 4, ..local() };
+        let mut rig = Rig::of(gl, &settings, moving_scene());
+        assert_eq!(rig.parts().0.nearest_depth(), way);
+        let eyes = pair(Eye::Right, DepthConvention::Reversed);
+        let formats = [(Format::Rgba16F, Filter::Nearest)];
+        let vectors = RenderTarget::new(gl, SIZE, &formats, Some(Format::Depth32F)).unwrap();
+        let motion = MotionTarget {
+            to: Destination::whole(&vectors),
+            former: eyes.view(Eye::Left),
+            ndc: Ndc::ZeroToOne,
+        };
+        let shown = StereoFrame::new(gl, eyes.size).unwrap();
+        for (method, frames_between) in [Method::Conventional, Method::Synthesized]
+            .into_iter()
+            .flat_map(|m| [FramesBetween::Method, FramesBetween::Runtime].map(|by| (m, by)))
+        {
+            let what = format!("{way:?}, {method:?}, {frames_between:?}");
+            let options = StereoOptions { frames_between, ..StereoOptions::default() };
+            let mut subject = create(gl, method, &settings, &options).unwrap();
+            let (renderer, scene) = rig.parts();
+            subject.prepare(renderer, scene).unwrap();
+            let made = Rc::new(Cell::new(0));
+            gl.set_observer(Some(Box::new(Counted(made.clone()))));
+            let mut held = None;
+            for i in 0..6 {
+                rig.set_time(0.12 + 0.01 * f64::from(i));
+                if frames_between == FramesBetween::Runtime {
+                    rig.render_with(subject.as_mut(), &eyes, |_, to| EyeTarget {
+                        motion: Some(motion),
+                        ..to
+                    });
+                    assert!(subject.report().has_motion, "{what}");
+                } else {
+                    rig.render(subject.as_mut(), &eyes);
+                    assert!(subject.show_again(&eyes, &shown.targets(), 0.5).unwrap(), "{what}");
+                }
+                assert_eq!(made.get(), 0, "{what}, frame {i}");
+                let now = (gl.object_count(), gl.texture_bytes());
+                assert!(i < 2 || *held.get_or_insert(now) == now, "{what}, frame {i}");
+            }
+            gl.set_observer(None);
+        }
+        assert_eq!(gl.take_errors(), None);
+    }
 }

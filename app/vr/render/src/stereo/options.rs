@@ -35,6 +35,21 @@ pub struct PipelineOptions {
     pub paper: PaperOptions,
 }
 
+/// Who makes the frames between those that are rendered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FramesBetween {
+    /// Nobody: every frame is rendered.
+    #[default]
+    Nobody,
+    /// The method, of the last render ([`super::StereoMethod::show_again`]): [`Method::Synthesized`], without near field and
+    /// policy and not with [`Pipeline::Paper`], and [`Method::Conventional`].
+    Method,
+    /// The display's runtime, of motion vectors ([`super::MotionTarget`]): of [`Method::Synthesized`], without near field, and
+    /// of [`Method::Conventional`].
+    Runtime,
+}
+
 /// Settings of all methods.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
@@ -47,10 +62,8 @@ pub struct StereoOptions {
     pub near_field: Option<f32>,
     /// When to render both eyes of frames that are mostly too near; `None` for never.
     pub policy: Option<NearFieldPolicy>,
-    /// True if frames between two renders are to be made of the last one ([`super::StereoMethod::show_again`]): by
-    /// [`Method::Synthesized`], without near field and policy and not with [`Pipeline::Paper`], and by
-    /// [`Method::Conventional`].
-    pub half_rate: bool,
+    /// Who makes the frames between those that are rendered.
+    pub frames_between: FramesBetween,
     /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
     /// `f_px * IPD / split_disparity` metres.
     pub split_disparity: f32,
@@ -66,7 +79,7 @@ impl Default for StereoOptions {
             guard_band: GuardBand::Distance(1.0),
             near_field: None,
             policy: Some(NearFieldPolicy::default()),
-            half_rate: false,
+            frames_between: FramesBetween::Nobody,
             split_disparity: 1.0,
             inset: None,
         }

@@ -9,7 +9,7 @@ use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMetho
 use super::motion::SynthesizedMotion;
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::NearFraction;
-use super::options::{Pipeline, PipelineOptions, StereoOptions};
+use super::options::{FramesBetween, Pipeline, PipelineOptions, StereoOptions};
 use super::over::{Over, OverlaySurfaces};
 use super::pipeline::Synthesis;
 use crate::view::{DrawRequest, GpuScene, Layout, NearestDepth, Renderer, Selection, Targets};
@@ -27,7 +27,7 @@ pub struct Synthesized {
     made: Option<Made>,
     auto_guard_band: Option<AutoGuardBand>,
     switch: Option<Switch>,
-    /// Made when vectors are first asked for.
+    /// Made if a runtime makes frames of motion vectors.
     motion: Option<SynthesizedMotion>,
     /// True if the last frame's vectors were written.
     has_motion: bool,
@@ -91,7 +91,7 @@ impl Synthesized {
                 policy,
                 mode: FrameMode::default(),
                 fraction: NearFraction::new(gl)?,
-                conventional: Conventional::default(),
+                conventional: Conventional::new(options),
             })
         });
         let is_auto = matches!(options.guard_band, GuardBand::Auto(_));
@@ -205,13 +205,8 @@ impl Synthesized {
         let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
         renderer.develop(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
         over.finish(frame, dominant, &surfaces);
-        // The source lacks what is near, and its vectors.
-        if frame.to(other).motion.is_some() && self.options.near_field.is_none() {
+        if let Some(motion) = &mut self.motion {
             let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
-            let motion = match &mut self.motion {
-                Some(motion) => motion,
-                slot => slot.insert(SynthesizedMotion::new(&self.gl)?),
-            };
             self.has_motion = motion.write(frame, (&depth, &views.source), self.options.guard_band)?;
         }
         Ok(())
@@ -239,6 +234,11 @@ impl StereoMethod for Synthesized {
                 },
             }),
         };
+        // With a near field, the source lacks what is near, and its vectors.
+        let has_vectors = self.options.frames_between == FramesBetween::Runtime;
+        if self.motion.is_none() && has_vectors && self.options.near_field.is_none() {
+            self.motion = Some(SynthesizedMotion::new(&self.gl, pairs)?);
+        }
         if let Some(auto) = &mut self.auto_guard_band {
             auto.prepare(pairs)?;
         }

@@ -41,12 +41,15 @@ pub(crate) struct Step {
 }
 
 impl VectorPass {
-    pub fn new(gl: &Rc<Context>) -> Result<VectorPass, GlError> {
+    /// Makes the pass for views with one depth a pixel, or with a pair ([`DepthImage::is_pair`]).
+    pub fn new(gl: &Rc<Context>, is_pair: bool) -> Result<VectorPass, GlError> {
         let program = |features: Features| {
             let source =
                 ShaderSource::Raster { vertex: "render/motion.vert", fragment: "render/motion.frag" };
             Program::new(gl, source, &features.defines())
         };
+        let mut vectors = DepthProgram::new(gl, "render/vectors.frag");
+        vectors.prepare(is_pair)?;
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         Ok(VectorPass {
             gl: gl.clone(),
@@ -55,15 +58,10 @@ impl VectorPass {
                 program(Features::CUTOUT)?,
                 program(Features::CUTOUT.or(Features::DIFFUSE_MAP))?,
             ],
-            vectors: DepthProgram::new(gl, "render/vectors.frag"),
+            vectors,
             target: RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth24))?,
             moves: false,
         })
-    }
-
-    /// Returns the context of the pass.
-    pub fn context(&self) -> &Rc<Context> {
-        &self.gl
     }
 
     /// Draws the moving surfaces of a view, for [`VectorPass::write`].

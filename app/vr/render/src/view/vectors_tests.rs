@@ -53,7 +53,7 @@ fn vectors_are_those_of_what_has_moved() {
             let target = target.unwrap();
             let to = Destination { origin: [3, 2], size: now.size, ..Destination::whole(&target) };
             let image = targets.depth(rendered.size, Eye::Left, [0, 0]);
-            let mut pass = VectorPass::new(gl).unwrap();
+            let mut pass = VectorPass::new(gl, false).unwrap();
             let step = Step { view: now, now: eye, then, ndc };
             pass.draw_moving(&rig.scene, &step).unwrap();
             pass.write((&image, &rendered), &step, [0, 0], &to).unwrap();
@@ -74,7 +74,7 @@ fn a_jump_is_no_motion() {
     let mut targets = rig.renderer.targets(Layout::Single).unwrap();
     let formats = [(Format::Rgba32F, Filter::Nearest)];
     let target = RenderTarget::new(gl, view.size, &formats, Some(Format::Depth32F)).unwrap();
-    let mut pass = VectorPass::new(gl).unwrap();
+    let mut pass = VectorPass::new(gl, false).unwrap();
     let mut fastest = |seconds| {
         rig.renderer.set_time(&mut rig.scene, seconds).unwrap();
         rig.renderer

@@ -14,7 +14,10 @@ use yoro::eyes::{Composition, EyePair, EyesError, Foveation, FoveationLevel, Gaz
 use yoro_files::interrupt;
 use yoro_gl::{Context, GlError};
 use yoro_metrics::{FlickerMeter, SsimWindow, psnr_where, ssim_where};
-use yoro_render::stereo::{LevelFrame, Method, SelectedMethod, StereoError, StereoFrame, StereoOptions};
+use yoro_render::stereo::{
+    EyeLevels, EyeTarget, FramesBetween, LevelFrame, LevelTargets, Method, SelectedMethod, StereoError,
+    StereoFrame, StereoMethod, StereoOptions,
+};
 use yoro_render::{DepthReader, PreparedScene, Selection, ViewTargets};
 
 /// The methods that render the levels.
@@ -55,10 +58,10 @@ impl Runner<'_> {
                 for turn in 0..turns {
                     let at = (turn + round as usize) % turns;
                     // The first frame at a place uploads what the next ones have.
-                    ways[at].render(prepared, pair, &mut frame)?;
+                    ways[at].render(prepared, pair, &frame.targets())?;
                     self.gl.finish();
                     let begin = Instant::now();
-                    ways[at].render(prepared, pair, &mut frame)?;
+                    ways[at].render(prepared, pair, &frame.targets())?;
                     self.gl.finish();
                     measurements[at].push(metric::FRAME_MS, milliseconds(begin.elapsed()));
                     self.bar.inc(1);
@@ -89,22 +92,24 @@ impl Way {
     /// Returns every method with every level: by method, from all pixels to the fewest.
     fn all(gl: &Rc<Context>, job: &Job) -> Result<Vec<Way>, GlError> {
         let each = METHODS.into_iter().flat_map(|method| FoveationLevel::ALL.map(|level| (method, level)));
-        each.map(|(method, level)| Way::new(gl, job, method, level)).collect()
+        each.map(|(method, level)| Way::new(gl, job, method, level, FramesBetween::Nobody)).collect()
     }
 
     /// Returns both methods with one level.
     pub fn both(gl: &Rc<Context>, job: &Job, level: FoveationLevel) -> Result<Vec<Way>, GlError> {
-        METHODS.into_iter().map(|method| Way::new(gl, job, method, level)).collect()
+        METHODS.map(|method| Way::new(gl, job, method, level, FramesBetween::Nobody)).into_iter().collect()
     }
 
-    fn new(
+    /// Makes a method with a level; `name` is that of all pixels.
+    pub fn new(
         gl: &Rc<Context>,
         job: &Job,
         (method, name): (Method, &str),
         level: FoveationLevel,
+        frames_between: FramesBetween,
     ) -> Result<Way, GlError> {
         let inset = level.foveation().map(|foveation| foveation.nearest);
-        let options = StereoOptions { policy: None, inset, ..StereoOptions::default() };
+        let options = StereoOptions { policy: None, inset, frames_between, ..StereoOptions::default() };
         Ok(Way {
             name: match level {
                 FoveationLevel::Off => name.to_owned(),
@@ -131,17 +136,57 @@ impl Way {
         pair.levels(self.level.foveation().as_ref(), axes, self.options.guard_band)
     }
 
-    fn render(
+    /// Renders both eyes, and composes them of their levels. Motion vectors are the wide level's.
+    pub fn render(
         &mut self,
-        prepared: &mut PreparedScene,
+        PreparedScene { renderer, scene }: &mut PreparedScene,
         pair: &EyePair,
-        frame: &mut StereoFrame,
+        to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
-        let (PreparedScene { renderer, scene }, levels) = (prepared, self.levels(pair)?);
+        let (levels, targets) = self.fit(pair, to)?;
+        self.method.render_levels(renderer, scene, &levels, &targets)?;
+        self.compose(&levels, to);
+        Ok(())
+    }
+
+    /// Shows the last render again; see [`StereoMethod::show_again`].
+    pub fn show_again(
+        &mut self,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+        ahead: f32,
+    ) -> Result<bool, StereoError> {
+        let (levels, targets) = self.fit(pair, to)?;
+        let can = self.method.show_levels_again(&levels, &targets, ahead)?;
+        self.compose(&levels, to);
+        Ok(can)
+    }
+
+    /// True if the last frame's motion targets were filled.
+    pub fn has_motion(&self) -> bool {
+        self.method.report().has_motion
+    }
+
+    /// Returns the levels of the eyes with their targets: those of the eyes themselves if there is one level.
+    fn fit<'a>(
+        &mut self,
+        pair: &EyePair,
+        to: &[EyeTarget<'a>; 2],
+    ) -> Result<(EyeLevels, LevelTargets<'a>), StereoError> {
+        let levels = self.levels(pair)?;
+        if levels.inset.is_none() {
+            return Ok((pair.into(), to.into()));
+        }
+        let mut targets = self.frame.fit(&levels)?;
+        for (own, to) in targets.wide.iter_mut().zip(to) {
+            own.motion = to.motion;
+        }
+        Ok(((&levels).into(), targets))
+    }
+
+    fn compose(&self, levels: &EyeLevels, to: &[EyeTarget; 2]) {
         if levels.inset.is_some() {
-            self.frame.render(&mut self.method, (renderer, scene), &levels, &frame.colors())
-        } else {
-            self.method.render_levels(renderer, scene, &pair.into(), &(&frame.targets()).into())
+            self.frame.compose(&to.map(|eye| eye.color));
         }
     }
 
@@ -178,7 +223,7 @@ fn qualities(
     let (mut rendered, mut images): (Vec<[RgbImage; 2]>, Vec<[RgbImage; 2]>) = (Vec::new(), Vec::new());
     for way in &mut *ways {
         let mut both = |pair: &EyePair| {
-            way.render(prepared, pair, frame)?;
+            way.render(prepared, pair, &frame.targets())?;
             Ok::<_, StereoError>([pair.dominant, other].map(|eye| eye_image(frame, eye)))
         };
         let ([a, b], [a_after, b_after]) = (both(pair)?, both(&next)?);

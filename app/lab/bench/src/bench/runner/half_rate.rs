@@ -7,6 +7,7 @@ use anyhow::ensure;
 use image::RgbImage;
 
 use super::emulated_runtime::Submitted;
+use super::foveation::Way;
 use super::reprojection::{SPREAD, measurement_of};
 use super::{Runner, milliseconds};
 use crate::bench::job::Job;
@@ -14,11 +15,11 @@ use crate::bench::motion::Motion;
 use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::{HEADSET_RATE, Views};
-use yoro::eyes::{DepthConvention, Eye, EyePair, Ndc, View};
+use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, View};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_metrics::{Channels, SsimWindow, psnr, psnr_where, ssim};
-use yoro_render::stereo::{self, EyeTarget, Method, MotionTarget, StereoFrame, StereoMethod, StereoOptions};
+use yoro_render::stereo::{EyeTarget, FramesBetween, Method, MotionTarget, StereoFrame};
 use yoro_render::{DepthImage, DepthReader, PreparedScene};
 
 /// The ways of making the frame between. The runtime is emulated.
@@ -30,7 +31,7 @@ const ANY_VIEW: &str = "any-view";
 /// The same frame rendered: by yoro, and the dominant eye's image for both.
 const FULL_RATE: &str = "yoro-full-rate";
 const SAME_IMAGE: &str = "same-image";
-/// Two renders of every frame, against which times are to be compared.
+/// Two renders of all pixels of every frame, against which times are to be compared.
 const CONVENTIONAL: &str = "conventional";
 
 /// Pixels of an eye along each axis for one of its vectors.
@@ -45,13 +46,13 @@ impl Runner<'_> {
     pub(super) fn half_rate(
         &mut self,
         job: &Job,
-        motion: Motion,
+        (motion, level): (Motion, FoveationLevel),
         prepared: &mut PreparedScene,
     ) -> anyhow::Result<()> {
         self.bar.set_message(job.conditions.to_string());
         let all = Job { frames: job.frames * SPREAD + 3, ..job.clone() };
         let views = Views::of_motion(&all, prepared, motion)?;
-        let mut ways = Ways::new(self.gl, job)?;
+        let mut ways = Ways::new(self.gl, job, level)?;
         let mut measurements: Vec<Measurement> = Vec::new();
         for i in 0..job.frames {
             interrupt::check()?;
@@ -97,10 +98,12 @@ struct Between {
 /// The methods that take part, and what they draw into.
 struct Ways {
     gl: Rc<Context>,
-    conventional: Box<dyn StereoMethod>,
-    synthesized: Box<dyn StereoMethod>,
-    half_rate: Box<dyn StereoMethod>,
-    mono: Box<dyn StereoMethod>,
+    /// Two renders of all pixels: the truth.
+    whole: Way,
+    conventional: Way,
+    synthesized: Way,
+    half_rate: Way,
+    mono: Way,
     frame: StereoFrame,
     /// Vectors and depth of both eyes.
     vectors: [RenderTarget; 2],
@@ -116,18 +119,18 @@ struct ReadBack {
 }
 
 impl Ways {
-    fn new(gl: &Rc<Context>, job: &Job) -> Result<Ways, GlError> {
-        let options = StereoOptions { policy: None, ..StereoOptions::default() };
-        let half = StereoOptions { half_rate: true, ..options };
-        let create = |method, options| stereo::create(gl, method, &job.render, options);
+    fn new(gl: &Rc<Context>, job: &Job, level: FoveationLevel) -> Result<Ways, GlError> {
+        let create =
+            |method: Method, level, between| Way::new(gl, job, (method, method.name()), level, between);
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         let target = || RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F));
         Ok(Ways {
             gl: gl.clone(),
-            conventional: create(Method::Conventional, &options)?,
-            synthesized: create(Method::Synthesized, &options)?,
-            half_rate: create(Method::Synthesized, &half)?,
-            mono: create(Method::Mono, &options)?,
+            whole: create(Method::Conventional, FoveationLevel::Off, FramesBetween::Runtime)?,
+            conventional: create(Method::Conventional, level, FramesBetween::Runtime)?,
+            synthesized: create(Method::Synthesized, level, FramesBetween::Runtime)?,
+            half_rate: create(Method::Synthesized, level, FramesBetween::Method)?,
+            mono: create(Method::Mono, level, FramesBetween::Nobody)?,
             frame: StereoFrame::new(gl, job.eyes.size)?,
             vectors: [target()?, target()?],
             depth: DepthReader::new(gl)?,
@@ -177,17 +180,16 @@ impl Ways {
         self.frame.resize(now.size)?;
         self.resize_vectors(vector_size)?;
         prepared.set_time(then_seconds)?;
-        self.half_rate.render_to(&mut prepared.renderer, &prepared.scene, &then, &self.frame.targets())?;
+        self.half_rate.render(prepared, &then, &self.frame.targets())?;
 
         prepared.set_time(now_seconds)?;
-        let PreparedScene { scene, renderer } = prepared;
         let to = self.targets(&then);
         let mut shown = Vec::new();
         let mut moving = Vec::new();
         for way in [TWO_EYES, ONE_EYE] {
             let method = if way == TWO_EYES { &mut self.conventional } else { &mut self.synthesized };
-            method.render_to(renderer, scene, &now, &to)?;
-            ensure!(method.report().has_motion, "{way} has no motion vectors");
+            method.render(prepared, &now, &to)?;
+            ensure!(method.has_motion(), "{way} has no motion vectors");
             let read = self.read(eye, now.depth.convention)?;
             let former = View { size: now.size, ..then.view(eye) };
             let submitted = Submitted {
@@ -205,7 +207,7 @@ impl Ways {
                 moving = moves(&read.vectors, read.size, now.size);
             }
         }
-        self.half_rate.render_to(renderer, scene, &now, &self.frame.targets())?;
+        self.half_rate.render(prepared, &now, &self.frame.targets())?;
         for (way, ahead) in [(DEPTH, 0.0), (ANY_VIEW, 0.5)] {
             let can = self.half_rate.show_again(&newest, &self.frame.targets(), ahead)?;
             ensure!(can, "the head has turned too far");
@@ -213,14 +215,13 @@ impl Ways {
         }
 
         prepared.set_time(newest_seconds)?;
-        let PreparedScene { scene, renderer } = prepared;
         for (way, method) in [(FULL_RATE, &mut self.synthesized), (SAME_IMAGE, &mut self.mono)] {
-            method.render_to(renderer, scene, &newest, &self.frame.targets())?;
+            method.render(prepared, &newest, &self.frame.targets())?;
             shown.push((way, image(&self.frame.rgba(eye))));
         }
         self.resize_vectors(now.size)?;
         let to = self.targets(&now);
-        self.conventional.render_to(renderer, scene, &newest, &to)?;
+        self.whole.render(prepared, &newest, &to)?;
         let truth = self.read(eye, now.depth.convention)?;
         for (here, there) in moving.iter_mut().zip(moves(&truth.vectors, truth.size, now.size)) {
             *here |= there;
@@ -240,13 +241,12 @@ impl Ways {
         prepared.set_time(now_seconds)?;
         let gl = self.gl.clone();
         let (plain, vectors) = (self.frame.targets(), self.targets(&then));
-        let PreparedScene { scene, renderer } = prepared;
         let mut all =
             [CONVENTIONAL, TWO_EYES, FULL_RATE, ONE_EYE, ANY_VIEW].map(|name| (name, Duration::ZERO));
         for is_timed in [false, true] {
             for (name, time) in &mut all {
                 let (method, to, frames) = match *name {
-                    CONVENTIONAL => (&mut self.conventional, &plain, 1),
+                    CONVENTIONAL => (&mut self.whole, &plain, 1),
                     TWO_EYES => (&mut self.conventional, &vectors, 2),
                     FULL_RATE => (&mut self.synthesized, &plain, 1),
                     ONE_EYE => (&mut self.synthesized, &vectors, 2),
@@ -254,7 +254,7 @@ impl Ways {
                 };
                 gl.finish();
                 let begin = Instant::now();
-                method.render_to(renderer, scene, &now, to)?;
+                method.render(prepared, &now, to)?;
                 if *name == ANY_VIEW {
                     method.show_again(&newest, to, 0.5)?;
                 }

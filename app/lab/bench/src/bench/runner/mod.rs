@@ -133,7 +133,7 @@ impl<'a> Runner<'a> {
             Measure::Foveation => self.foveation(job, &mut prepared, done),
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Reprojection(displaced) => self.reprojection(job, displaced, &mut prepared),
-            Measure::HalfRate(motion) => self.half_rate(job, motion, &mut prepared),
+            Measure::HalfRate(motion, level) => self.half_rate(job, (motion, level), &mut prepared),
             Measure::Stream(late) => self.stream(job, late, &mut prepared),
             Measure::Executed(device) => self.executed(job, &device, &mut prepared),
             Measure::WholeFrames => self.whole_frames(job, &mut prepared),
@@ -167,7 +167,7 @@ impl<'a> Runner<'a> {
             Measure::Flicker
             | Measure::GuardBand
             | Measure::Reprojection(Displaced::Late(..))
-            | Measure::HalfRate(_)
+            | Measure::HalfRate(..)
             | Measure::Stream(_) => Views::along_path(job, prepared, views::STEP)?.first(),
         };
         BlankFinder::new(self.gl)?.refuse_blank(prepared, views.names.iter().cloned().zip(&views.pairs))

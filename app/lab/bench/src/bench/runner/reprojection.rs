@@ -17,7 +17,7 @@ use yoro::opengl::{AnyView, Gather, Options, Outputs, Source};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
-use yoro_render::stereo::{self, Method, StereoFrame, StereoMethod, StereoOptions};
+use yoro_render::stereo::{self, FramesBetween, Method, StereoFrame, StereoMethod, StereoOptions};
 use yoro_render::{PreparedScene, ViewTargets};
 
 /// Names of the ways of showing a render at another pose.
@@ -126,7 +126,8 @@ struct Timer {
 
 impl Timer {
     fn new(gl: &Rc<Context>, job: &Job) -> Result<Timer, GlError> {
-        let options = StereoOptions { half_rate: true, policy: None, ..StereoOptions::default() };
+        let options =
+            StereoOptions { frames_between: FramesBetween::Method, policy: None, ..StereoOptions::default() };
         let create = |method, options| stereo::create(gl, method, &job.render, options);
         let methods = [
             create(Method::Conventional, &StereoOptions::default())?,
