@@ -118,9 +118,15 @@ fn a_session_runs_from_loading_to_its_summary() {
 
 #[test]
 fn half_the_rate_renders_every_other_frame() {
+    for foveation in ["foveation=off", "foveation=medium"] {
+        assert_half_the_rate(foveation);
+    }
+}
+
+fn assert_half_the_rate(foveation: &str) {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let mut run = Run::new(gl, &["scene=talk", "hud=false", "method=auto", "frame-rate=half"]);
+    let mut run = Run::new(gl, &["scene=talk", "hud=false", "method=auto", "frame-rate=half", foveation]);
     run.load();
     let still = HeldHead { rendered: Quat::IDENTITY, displayed: Quat::IDENTITY };
     run.viewer.hold_head(Some(still));

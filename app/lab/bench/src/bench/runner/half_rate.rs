@@ -25,6 +25,8 @@ use yoro_render::{DepthImage, DepthReader, PreparedScene};
 /// The ways of making the frame between. The runtime is emulated.
 const TWO_EYES: &str = "runtime-two-eyes";
 const ONE_EYE: &str = "runtime-one-eye";
+/// The colour of two eyes with the vectors and depth of one: what these alone lose.
+const VECTORS: &str = "runtime-made-vectors";
 const ROTATION: &str = "rotation";
 const DEPTH: &str = "depth-alone";
 const ANY_VIEW: &str = "any-view";
@@ -185,7 +187,7 @@ impl Ways {
         prepared.set_time(now_seconds)?;
         let to = self.targets(&then);
         let mut shown = Vec::new();
-        let mut moving = Vec::new();
+        let (mut moving, mut true_color) = (Vec::new(), Vec::new());
         for way in [TWO_EYES, ONE_EYE] {
             let method = if way == TWO_EYES { &mut self.conventional } else { &mut self.synthesized };
             method.render(prepared, &now, &to)?;
@@ -202,9 +204,13 @@ impl Ways {
             };
             let pose = newest.poses[eye.index()];
             shown.push((way, image(&submitted.extrapolate(pose, 0.5))));
-            if way == TWO_EYES {
+            if way == ONE_EYE {
+                let submitted = Submitted { rgba: &true_color, ..submitted };
+                shown.push((VECTORS, image(&submitted.extrapolate(pose, 0.5))));
+            } else {
                 shown.push((ROTATION, image(&submitted.rotate(pose))));
                 moving = moves(&read.vectors, read.size, now.size);
+                true_color = read.rgba;
             }
         }
         self.half_rate.render(prepared, &now, &self.frame.targets())?;
