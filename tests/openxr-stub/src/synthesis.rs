@@ -187,14 +187,16 @@ fn frame_between(
     let Depth { image: depth, range, near_far } = &synthesis.depth;
     let vectors = read_numbers(world, &synthesis.vectors, false)?;
     let depth = read_numbers(world, depth, true)?;
-    // In OpenGL z is from -1 to 1, which XR_EXT_frame_synthesis forbids.
+    let is_gl = world.its_session().ok()?.graphics.rows_from_bottom();
+    // y of NDC grows with the rows of the image. In OpenGL z is from -1 to 1, which XR_EXT_frame_synthesis forbids.
+    let y = if is_gl { 1.0 } else { -1.0 };
     let z = match () {
         () if synthesis.is_flat => 0.0,
-        () if synthesis.is_space_warp => 0.5,
+        () if is_gl && synthesis.is_space_warp => 0.5,
         () => 1.0,
     };
     let (scale, offset) = (Vec3::from(synthesis.scale), Vec3::from(synthesis.offset));
-    let of_texel = |v: &[f32]| (Vec3::new(v[0], v[1], v[2]) * scale + offset) * Vec3::new(1.0, 1.0, z);
+    let of_texel = |v: &[f32]| (Vec3::new(v[0], v[1], v[2]) * scale + offset) * Vec3::new(1.0, y, z);
     let vectors: Vec<Vec3> = vectors.chunks_exact(4).map(of_texel).collect();
     let depth: Vec<f32> = depth.chunks_exact(4).map(|d| (d[0] - range[0]) / (range[1] - range[0])).collect();
     let size = |image: &Image| [image.rect[2] as usize, image.rect[3] as usize];

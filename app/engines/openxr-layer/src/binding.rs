@@ -1,6 +1,7 @@
 //! The graphics interface that the application binds its session to.
 
 use openxr_sys as sys;
+use yoro::synthesis::backend::WarpKind;
 
 use crate::dispatch::{Dispatch, XrResult};
 use crate::reason::Reason;
@@ -37,14 +38,16 @@ impl Binding {
         None
     }
 
-    /// Creates the synthesis pipeline of the session.
+    /// Creates a synthesis pipeline of the session.
     ///
     /// # Errors
     /// A [`Reason`] if the driver lacks a feature.
     ///
     /// # Safety
     /// The device or the context exists until the pipeline is dropped.
-    pub unsafe fn synthesizer(&self) -> Result<Box<dyn Synthesizer>, Reason> {
+    pub unsafe fn synthesizer<W: WarpKind + Send + 'static>(
+        &self,
+    ) -> Result<Box<dyn Synthesizer<W>>, Reason> {
         // SAFETY: both require that the device or the context outlives the pipeline, as this function does.
         unsafe {
             Ok(match self {

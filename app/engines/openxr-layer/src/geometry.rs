@@ -148,6 +148,23 @@ pub struct SubmittedDepth {
     pub max: f32,
 }
 
+impl SubmittedDepth {
+    /// Returns the distances that 0 and 1 stand for, after depth was scaled from `min` to `max`.
+    ///
+    /// # Errors
+    /// [`GeometryError::Depth`].
+    pub fn range(&self) -> Result<DepthRange, GeometryError> {
+        let SubmittedDepth { near, far, min, max } = *self;
+        // Written so that NaN fails too.
+        let ordered = 0.0 <= min && min < max && max <= 1.0;
+        if ordered {
+            Ok(DepthRange::from_distances(near, far))
+        } else {
+            Err(GeometryError::Depth { min, max })
+        }
+    }
+}
+
 /// A rectangle of whole pixels, counted from the upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rectangle {
@@ -180,6 +197,8 @@ pub struct Split {
     pub source: Rectangle,
     /// The warp to the other eye, whose image has the size of `crop`.
     pub warp: Warp,
+    /// The eyes whose pixels are moved: those that are submitted or, of a flipped image, those of the mirrored world.
+    pub eyes: EyePair,
 }
 
 /// Splits a submitted view into two eyes with the relative poses and frusta of the offer's eyes. The view's pose, field
@@ -188,12 +207,8 @@ pub struct Split {
 /// # Errors
 /// [`GeometryError`]. The image can still be shown unchanged.
 pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryError> {
-    let SubmittedDepth { near, far, min, max } = submitted.depth;
-    // Written so that NaN fails too.
-    let ordered = 0.0 <= min && min < max && max <= 1.0;
-    if !ordered {
-        return Err(GeometryError::Depth { min, max });
-    }
+    let SubmittedDepth { min, max, .. } = submitted.depth;
+    let depth = submitted.depth.range()?;
     let (whole, size) = (submitted.frustum, submitted.size);
     let sound = [whole.left, whole.right, whole.bottom, whole.top].iter().all(|edge| edge.is_finite());
     if !sound || whole.width() <= 0.0 || whole.height() <= 0.0 || size.contains(&0) {
@@ -231,13 +246,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
     let between = offered.orientation.inverse() * (eyes.poses[other].position - offered.position);
     let mut poses = [submitted.pose; 2];
     poses[other] = submitted.pose.translated_local(between);
-    let pair = EyePair {
-        poses,
-        frusta,
-        depth: DepthRange::from_distances(near, far),
-        size: part,
-        dominant: eyes.dominant,
-    };
+    let pair = EyePair { poses, frusta, depth, size: part, dominant: eyes.dominant };
     // The guard band is the part of the image, on that side, beyond both eyes.
     let beyond = |columns: f32| (columns - ROUNDING).ceil().max(0.0) as u32;
     let guard = match eyes.dominant.other() {
@@ -256,7 +265,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
     let mut warp = views.warp;
     warp.law.scale /= f64::from(max - min);
     warp.law.offset -= warp.law.scale * f64::from(min);
-    Ok(Split { crop, poses, frusta, source, warp })
+    Ok(Split { crop, poses, frusta, source, warp, eyes: pair })
 }
 
 #[cfg(test)]

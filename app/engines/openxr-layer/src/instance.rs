@@ -10,7 +10,7 @@ use sys::ViewConfigurationType as Views;
 
 use crate::dispatch::{Dispatch, XrResult, check};
 use crate::settings::{OfferedAs, Settings};
-use crate::{lock, sizes};
+use crate::{lock, sizes, structures};
 
 /// The estimated width of the offered view, relative to an eye's, before it is known from a session. The frusta of the
 /// two eyes of common headsets differ by about this much.
@@ -161,7 +161,7 @@ impl Instance {
         Ok(views)
     }
 
-    /// Returns the one view: the dominant eye's, with more pixels.
+    /// Returns the one view: the dominant eye's, with more pixels, and more motion vectors if the chain asks for their size.
     pub fn view(&self, system: sys::SystemId, chain: *mut c_void) -> XrResult<sys::ViewConfigurationView> {
         let mut chains = [ptr::null_mut(); 2];
         chains[self.settings.dominant.index()] = chain;
@@ -181,6 +181,18 @@ impl Instance {
             let size = known.unwrap_or([(eye[0] as f32 * ESTIMATED_WIDTH).ceil() as u32, eye[1]]);
             self.latch_size(system, part, size)
         });
+        let ty = sys::FrameSynthesisConfigViewEXT::TYPE;
+        // SAFETY: the application's chain, which the runtime has filled in.
+        let vectors = unsafe { structures::find_output::<sys::FrameSynthesisConfigViewEXT>(own.next, ty) };
+        if let Some(vectors) = vectors {
+            // SAFETY: as above.
+            let vectors = unsafe { &mut *vectors };
+            let (width, height) = (
+                &mut vectors.recommended_motion_vector_image_rect_width,
+                &mut vectors.recommended_motion_vector_image_rect_height,
+            );
+            [*width, *height] = sizes::scaled([*width, *height], eye, size);
+        }
         sys::ViewConfigurationView {
             recommended_image_rect_width: size[0].min(own.max_image_rect_width),
             recommended_image_rect_height: size[1].min(own.max_image_rect_height),

@@ -2,8 +2,6 @@
 
 use std::time::Duration;
 
-use yoro::eyes::Warp;
-
 use crate::geometry::Rectangle;
 use crate::reason::Reason;
 
@@ -25,22 +23,23 @@ pub struct Image {
     pub layers: u32,
 }
 
-/// The synthesis of one frame. Rectangles count from row 0 of the image: the top in Vulkan, the bottom in OpenGL.
-pub struct Job<'a> {
+/// The synthesis of one image: of colour by a [`Warp`](yoro::eyes::Warp), of motion vectors by a
+/// [`MotionWarp`](yoro::eyes::MotionWarp). Rectangles count from row 0 of the image: the top in Vulkan, the bottom in OpenGL.
+pub struct Job<'a, W> {
+    /// Colour or vectors.
     pub color: Image,
     pub depth: Image,
     /// The part of both images that is read.
     pub source: Rectangle,
-    /// The warp to the other eye.
-    pub warp: &'a Warp,
-    /// The image that the other eye is drawn to, beginning at its first column and row.
+    pub warp: &'a W,
+    /// The image that is drawn to, beginning at its first column and row.
     pub target: Image,
-    /// The other eye's depth, stored like the source's.
+    /// Its depth, stored like the source's.
     pub target_depth: Option<Image>,
 }
 
-/// The synthesis pipeline of a session, and everything that it needs.
-pub trait Synthesizer: Send {
+/// A synthesis pipeline of a session, and everything that it needs.
+pub trait Synthesizer<W>: Send {
     /// Submits the synthesis of one frame to the GPU, after the application's own work, without waiting for it. Returns
     /// the GPU time of an earlier frame once it is known.
     ///
@@ -50,7 +49,7 @@ pub trait Synthesizer: Send {
     /// # Safety
     /// The images belong to the session, and the runtime does not own them at the moment. In Vulkan the source's images
     /// are in attachment layouts, and the target's are left in them. No other thread uses the queue or the context.
-    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason>;
+    unsafe fn synthesize(&mut self, job: &Job<W>) -> Result<Option<Duration>, Reason>;
 
     /// Forgets the images of a swapchain, which are about to be destroyed.
     fn forget(&mut self, images: &[u64]);

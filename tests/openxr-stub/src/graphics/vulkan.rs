@@ -6,6 +6,7 @@ use std::ffi::c_void;
 
 use ash::vk;
 use ash::vk::Handle as _;
+use half::f16;
 use openxr_sys as sys;
 use sys::Result as Code;
 
@@ -120,11 +121,12 @@ impl Vulkan {
         }
     }
 
-    /// Copies a rectangle with four bytes per pixel to the host.
-    fn copy(&self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
+    /// Copies a rectangle with this many bytes per pixel to the host. Returns its rows from the lowest to the top one.
+    fn copy(&self, texture: Texture, layer: u32, rect: [i32; 4], bytes: usize) -> Option<Vec<u8>> {
         let [x, y, width, height] = rect;
+        let row = width as usize * bytes;
         let image = self.images.get(&texture.raw)?;
-        let size = width as u64 * height as u64 * 4;
+        let size = row as u64 * height as u64;
         let info = vk::BufferCreateInfo::default().size(size).usage(vk::BufferUsageFlags::TRANSFER_DST);
         let visible = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
         // SAFETY: a buffer with its own memory, of the size of the copy, which nothing uses afterwards.
@@ -149,7 +151,8 @@ impl Vulkan {
                 self.turn(commands, texture, [copied, image.layout]);
             })?;
             let start = self.device.map_memory(memory, 0, size, vk::MemoryMapFlags::empty()).ok()?;
-            let bytes = std::slice::from_raw_parts(start.cast::<u8>(), size as usize).to_vec();
+            let rows = std::slice::from_raw_parts(start.cast::<u8>(), size as usize).chunks_exact(row).rev();
+            let bytes = rows.flatten().copied().collect();
             self.device.destroy_buffer(buffer, None);
             self.device.free_memory(memory, None);
             Some(bytes)
@@ -260,12 +263,35 @@ impl Graphics for Vulkan {
             vk::Format::B8G8R8A8_UNORM | vk::Format::B8G8R8A8_SRGB => true,
             _ => return None,
         };
-        let bytes = self.copy(texture, layer, rect)?;
-        let mut pixels: Vec<u8> = bytes.chunks_exact(rect[2] as usize * 4).rev().flatten().copied().collect();
+        let mut pixels = self.copy(texture, layer, rect, 4)?;
         if swapped {
             pixels.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
         }
         Some(pixels)
+    }
+
+    fn read_numbers(&mut self, texture: Texture, layer: u32, rect: [i32; 4], _: bool) -> Option<Vec<f32>> {
+        fn depth(depth: f32) -> [f32; 4] {
+            [depth, 0.0, 0.0, 0.0]
+        }
+        let (size, numbers): (usize, fn(&[u8]) -> [f32; 4]) = match self.images.get(&texture.raw)?.format {
+            vk::Format::R16G16B16A16_SFLOAT => {
+                (8, |texel| [0, 2, 4, 6].map(|i| f16::from_ne_bytes([texel[i], texel[i + 1]]).to_f32()))
+            }
+            vk::Format::D32_SFLOAT => {
+                (4, |texel| depth(f32::from_ne_bytes([texel[0], texel[1], texel[2], texel[3]])))
+            }
+            vk::Format::D16_UNORM => {
+                (2, |texel| depth(f32::from(u16::from_ne_bytes([texel[0], texel[1]])) / f32::from(u16::MAX)))
+            }
+            _ => return None,
+        };
+        let bytes = self.copy(texture, layer, rect, size)?;
+        Some(bytes.chunks_exact(size).flat_map(numbers).collect())
+    }
+
+    fn rows_from_bottom(&self) -> bool {
+        false
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::{fs, io};
 
-use yoro::eyes::Eye;
+use yoro::eyes::{Eye, Warp};
 
 use super::chain::{Layers, held, projection, rectangle};
 use crate::geometry::Rectangle;
@@ -22,7 +22,7 @@ pub const FRAME: u64 = 20;
 /// As for [`Synthesizer::read`].
 pub unsafe fn write(
     session: &Session,
-    synthesizer: &mut dyn Synthesizer,
+    synthesizer: &mut dyn Synthesizer<Warp>,
     name: &str,
     image: Image,
     part: Rectangle,
@@ -60,7 +60,7 @@ pub unsafe fn write_stereo(session: &Session, swapchains: &[Arc<Swapchain>], lay
     // SAFETY: a layer of two views.
     let views = unsafe { std::slice::from_raw_parts(layer.views, 2) };
     // SAFETY: dropped at the end of this function, during which the session is live.
-    let Ok(mut synthesizer) = (unsafe { binding.synthesizer() }) else { return };
+    let Ok(mut synthesizer) = (unsafe { binding.synthesizer::<Warp>() }) else { return };
     for (eye, view) in Eye::BOTH.into_iter().zip(views) {
         let Ok((content, image)) = held(swapchains, view.sub_image.swapchain, "colour") else { continue };
         let Ok(part) = rectangle(&view.sub_image, content) else { continue };

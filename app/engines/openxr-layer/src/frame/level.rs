@@ -4,47 +4,57 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use openxr_sys as sys;
+use yoro::eyes::Warp;
 
 #[cfg(feature = "capture")]
 use super::capture;
 use super::chain::{depth_of, is_upside_down};
+use super::output::Output;
 use super::rewrite::Eyes;
 use super::synthesized::{Key, Synthesized};
-use super::target::{Acquired, Target};
+use super::target::Acquired;
+use super::vectors::Vectors;
 use super::{source, split_source};
 use crate::binding::Binding;
 #[cfg(feature = "capture")]
 use crate::geometry::Rectangle;
 use crate::instance::Part;
+use crate::motion::MotionInfo;
 use crate::reason::Reason;
 use crate::say;
 use crate::session::Session;
 use crate::swapchain::{Content, Swapchain};
-use crate::synthesizer::{Job, Synthesizer};
+use crate::synthesizer::Job;
 
-/// Indices of colour and depth.
+/// Indices of colour, or motion vectors, and depth.
 pub const COLOR: usize = 0;
 pub const DEPTH: usize = 1;
-const ATTACHMENTS: [sys::SwapchainUsageFlags; 2] =
-    [sys::SwapchainUsageFlags::COLOR_ATTACHMENT, sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT];
 
 /// What is kept from frame to frame for one of the application's rendered views. Of four views two are rendered, each with
 /// sizes of its own.
 #[derive(Default)]
 pub struct Level {
-    /// Created in the first frame that needs it. An error is final, except [`Reason::NotCurrent`].
-    synthesizer: Option<Result<Box<dyn Synthesizer>, Reason>>,
     /// Colour of the other eye, and its depth if the runtime accepts depth.
-    targets: [Option<Target>; 2],
+    eye: Output<Warp>,
+    vectors: Vectors,
     /// Depth formats for which no target can be created.
     without_depth: Vec<i64>,
     /// The last synthesized view, while the targets still show it.
     pub last: Option<Synthesized>,
 }
 
+/// What was made of one view.
+pub struct Synthesis {
+    /// The two views that replace it.
+    pub eyes: Eyes,
+    /// The GPU time of an earlier synthesis once it is known.
+    pub time: Option<Duration>,
+    /// The reason why the application's motion vectors do not go on to the runtime.
+    pub no_vectors: Option<Reason>,
+}
+
 impl Level {
-    /// Returns the two views that replace one, and the GPU time of an earlier synthesis once it is known. `captures` is true
-    /// in the frame of which pictures are written.
+    /// Returns the two views that replace one. `captures` is true in the frame of which pictures are written.
     ///
     /// # Safety
     /// The view belongs to this submitted layer.
@@ -56,23 +66,26 @@ impl Level {
         layer: &sys::CompositionLayerProjection,
         view: &sys::CompositionLayerProjectionView,
         #[cfg(feature = "capture")] captures: bool,
-    ) -> Result<(Eyes, Option<Duration>), Reason> {
+    ) -> Result<Synthesis, Reason> {
         // SAFETY: a submitted view.
-        let info = unsafe { depth_of(view) }.ok_or(Reason::NoDepth)?;
+        let (info, motion) = unsafe { (depth_of(view).ok_or(Reason::NoDepth)?, MotionInfo::of(view)) };
         // SAFETY: a submitted layer.
         let upside_down = unsafe { is_upside_down(layer) };
         let key = Key::new(swapchains, view, info, upside_down);
         if let Some(last) = self.last.as_ref().filter(|last| last.key == key) {
-            return Ok((last.again(view, info), None));
+            let vectors = last.vectors.zip(motion);
+            let motions = vectors.and_then(|(vectors, motion)| vectors.infos(swapchains, &motion));
+            let eyes = Eyes { motions, ..last.again(view, info) };
+            return Ok(Synthesis { eyes, time: None, no_vectors: None });
         }
         self.last = None;
+        let former = self.vectors.former.take();
         let binding = session.binding.ok_or(Reason::NoGraphics)?;
         let offer = session.last_offer(part).ok_or(Reason::NoViews)?.map_err(Reason::Views)?;
         let source = source(swapchains, view, info, upside_down)?;
         let split = split_source(&offer, &source)?;
-        self.synthesizer(binding)?;
-        let [color, depth] = self.acquire(session, &binding, source.contents)?;
-        let color = color.ok_or(Reason::NoGraphics)?;
+        self.eye.synthesizer(binding)?;
+        let (color, depth) = self.acquire(session, &binding, source.contents)?;
         let from_top = binding.rows_from_top();
         let crop = source.part.part(split.crop, from_top);
         let job = Job {
@@ -83,7 +96,7 @@ impl Level {
             target: color.image,
             target_depth: depth.map(|depth| depth.image),
         };
-        let synthesizer = self.synthesizer(binding)?;
+        let synthesizer = self.eye.synthesizer(binding)?;
         // SAFETY: the runtime owns none of these images: releases of the source's are held back, the target's were
         // acquired. In xrEndFrame the application lets nobody else use the queue (XR_KHR_vulkan_enable) or the context.
         let result = unsafe { synthesizer.synthesize(&job) };
@@ -98,34 +111,32 @@ impl Level {
                 capture::write(session, synthesizer, dominant.other().name(), job.target, whole);
             }
         }
-        // The images are released even after an error, and then not shown. A target that cannot be released is useless.
-        let released = depth.map_or(Ok(()), |depth| depth.release(session));
-        if let Err(reason) = color.release(session).and(released) {
-            self.drop_target(session, COLOR);
-            self.drop_target(session, DEPTH);
-            return Err(reason);
-        }
+        // The images are released even after an error, and then not shown.
+        self.eye.release(session, (color, depth))?;
         // The driver may not be able to write this format as depth.
         if let (Err(reason @ (Reason::Gl(_) | Reason::Synthesis(_))), Some(_)) = (&result, depth) {
             self.give_up_depth(session, source.contents[DEPTH].format, reason);
         }
-        let time = result?;
-        let synthesized = Synthesized { key, split, crop, dominant: offer.eyes.dominant, color, depth };
-        let eyes = synthesized.eyes(view, info);
+        let mut time = result?;
+        let dominant = offer.eyes.dominant;
+        let vectors = motion.map(|motion| {
+            // SAFETY: a structure in the submitted view's chain.
+            unsafe {
+                self.vectors.make(session, binding, swapchains, &motion, former, (&source, &split), dominant)
+            }
+        });
+        let (vectors, no_vectors) = match vectors.transpose() {
+            Ok(made) => {
+                time = made.and_then(|(_, more)| Some(time? + more?)).or(time);
+                (made.map(|(vectors, _)| vectors), None)
+            }
+            Err(reason) => (None, Some(reason)),
+        };
+        let synthesized = Synthesized { key, split, crop, dominant, color, depth, vectors };
+        let motions = vectors.zip(motion).and_then(|(vectors, motion)| vectors.infos(swapchains, &motion));
+        let eyes = Eyes { motions, ..synthesized.eyes(view, info) };
         self.last = Some(synthesized);
-        Ok((eyes, time))
-    }
-
-    /// Returns the pipeline, and creates it if necessary.
-    fn synthesizer(&mut self, binding: Binding) -> Result<&mut dyn Synthesizer, Reason> {
-        // The context may have become free.
-        self.synthesizer.take_if(|made| matches!(made, Err(Reason::NotCurrent)));
-        // SAFETY: the application keeps its device or context until the session is destroyed, and `end` drops the
-        // pipeline before that.
-        match self.synthesizer.get_or_insert_with(|| unsafe { binding.synthesizer() }) {
-            Ok(synthesizer) => Ok(synthesizer.as_mut()),
-            Err(reason) => Err(reason.clone()),
-        }
+        Ok(Synthesis { eyes, time, no_vectors })
     }
 
     /// Acquires images for the other eye, in swapchains like the application's: colour, and depth if the runtime
@@ -135,66 +146,29 @@ impl Level {
         session: &Session,
         binding: &Binding,
         [color, depth]: [&Content; 2],
-    ) -> Result<[Option<Acquired>; 2], Reason> {
-        self.fit(session, binding, COLOR, color)?;
+    ) -> Result<(Acquired, Option<Acquired>), Reason> {
+        self.eye.fit(session, binding, COLOR, color)?;
         let mut takes_depth = session.instance.takes_depth && !self.without_depth.contains(&depth.format);
-        if takes_depth && let Err(reason) = self.fit(session, binding, DEPTH, depth) {
+        if takes_depth && let Err(reason) = self.eye.fit(session, binding, DEPTH, depth) {
             self.give_up_depth(session, depth.format, &reason);
             takes_depth = false;
         }
-        let mut acquired = [None; 2];
-        for which in [COLOR, DEPTH].into_iter().filter(|which| *which == COLOR || takes_depth) {
-            let target = self.targets[which].as_mut().map(|target| target.acquire(session));
-            acquired[which] = match target.transpose() {
-                Ok(image) => image,
-                Err(reason) => {
-                    if let Some(color) = acquired[COLOR]
-                        && color.release(session).is_err()
-                    {
-                        self.drop_target(session, COLOR);
-                    }
-                    return Err(reason);
-                }
-            };
-        }
-        Ok(acquired)
-    }
-
-    /// Creates a target like the application's swapchain, unless the existing one fits.
-    fn fit(
-        &mut self,
-        session: &Session,
-        binding: &Binding,
-        which: usize,
-        like: &Content,
-    ) -> Result<(), Reason> {
-        if !self.targets[which].as_ref().is_some_and(|target| target.fits(like)) {
-            self.drop_target(session, which);
-            self.targets[which] = Some(Target::new(session, binding, ATTACHMENTS[which], like)?);
-        }
-        Ok(())
+        self.eye.acquire(session, takes_depth)
     }
 
     /// Stops submitting depth of a format to the runtime. The layer still needs the application's depth.
     fn give_up_depth(&mut self, session: &Session, format: i64, reason: &Reason) {
         self.without_depth.push(format);
-        self.drop_target(session, DEPTH);
+        self.eye.drop_target(session, DEPTH);
+        self.last = None;
         let application = &session.instance.application;
         say(format_args!("{application}: depth of format {format} does not go on to the runtime: {reason}"));
-    }
-
-    fn drop_target(&mut self, session: &Session, which: usize) {
-        if let Some(old) = self.targets[which].take() {
-            self.forget(&old.content);
-            old.destroy(session);
-        }
     }
 
     /// Forgets images that are about to be destroyed.
     pub fn forget(&mut self, content: &Content) {
         self.last = None;
-        if let Some(Ok(synthesizer)) = &mut self.synthesizer {
-            synthesizer.forget(&content.images);
-        }
+        self.eye.forget(content);
+        self.vectors.outputs.iter_mut().for_each(|output| output.forget(content));
     }
 }

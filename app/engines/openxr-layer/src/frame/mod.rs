@@ -5,10 +5,12 @@
 mod capture;
 mod chain;
 mod level;
+mod output;
 mod rewrite;
 mod statistics;
 mod synthesized;
 mod target;
+mod vectors;
 
 use std::collections::HashSet;
 use std::mem::Discriminant;
@@ -33,13 +35,16 @@ use level::Level;
 use rewrite::{Eyes, Rewritten};
 use statistics::{Report, Statistics};
 
+/// What the log says if motion vectors do not go on to the runtime.
+const NO_VECTORS: &str = "shown without its motion vectors";
+
 /// The state that xrEndFrame keeps between frames.
 #[derive(Default)]
 pub struct Frames {
     /// One for each rendered view, in the order of the views.
     levels: [Level; 2],
-    /// The kinds of reasons that have been logged.
-    told: HashSet<Discriminant<Reason>>,
+    /// The kinds of reasons that have been logged, with what they were reasons for.
+    told: HashSet<(&'static str, Discriminant<Reason>)>,
     statistics: Statistics,
     report: Report,
 }
@@ -119,6 +124,10 @@ pub unsafe fn end_frame(
         }
     };
     let mut result = end(&mut rewritten);
+    if is_about_layers(result) && rewritten.drop_motions() {
+        lock(frames).tell(session, NO_VECTORS, Reason::Runtime("xrEndFrame", result));
+        result = end(&mut rewritten);
+    }
     if synthesized && is_about_layers(result) {
         lock(frames).refused(session, Reason::Runtime("xrEndFrame", result));
         let mut rewritten = Rewritten::default();
@@ -174,17 +183,26 @@ fn source<'a>(
     info: &'a sys::CompositionLayerDepthInfoKHR,
     upside_down: bool,
 ) -> Result<Source<'a>, Reason> {
-    let (color, color_image) = held(swapchains, view.sub_image.swapchain, "colour")?;
-    let (depth, depth_image) = held(swapchains, info.sub_image.swapchain, "depth")?;
-    let part = rectangle(&view.sub_image, color)?;
-    if rectangle(&info.sub_image, depth)? != part || color.size != depth.size {
-        return Err(Reason::Apart);
+    let images = [&view.sub_image, &info.sub_image];
+    let (contents, images, part) = submitted_images(swapchains, images, ["colour", "depth"])?;
+    Ok(Source { view, info, contents, images, part, upside_down })
+}
+
+/// Returns two submitted images with their swapchains, and the rectangle, which is the same in both.
+fn submitted_images<'a>(
+    swapchains: &'a [Arc<Swapchain>],
+    [color, depth]: [&sys::SwapchainSubImage; 2],
+    whats: [&'static str; 2],
+) -> Result<([&'a Content; 2], [Image; 2], Rectangle), Reason> {
+    let contents =
+        [held(swapchains, color.swapchain, whats[0])?, held(swapchains, depth.swapchain, whats[1])?];
+    let part = rectangle(color, contents[0].0)?;
+    if rectangle(depth, contents[1].0)? != part || contents[0].0.size != contents[1].0.size {
+        return Err(Reason::Apart(whats[0], whats[1]));
     }
-    let images = [
-        color.image(color_image, view.sub_image.image_array_index),
-        depth.image(depth_image, info.sub_image.image_array_index),
-    ];
-    Ok(Source { view, info, contents: [color, depth], images, part, upside_down })
+    let [color, depth] = [(color, contents[0]), (depth, contents[1])]
+        .map(|(image, (content, held))| content.image(held, image.image_array_index));
+    Ok((contents.map(|(content, _)| content), [color, depth], part))
 }
 
 /// Splits a submitted view into two eyes.
@@ -259,7 +277,7 @@ impl Frames {
     ) -> Result<Eyes, Reason> {
         let part = session.parts()[index];
         // SAFETY: same contract.
-        let (eyes, time) = unsafe {
+        let synthesis = unsafe {
             self.levels[index].synthesize(
                 session,
                 part,
@@ -270,19 +288,27 @@ impl Frames {
                 (self.statistics.frames == capture::FRAME),
             )
         }?;
-        if let Some(time) = time {
+        if let Some(time) = synthesis.time {
             // Both syntheses of four views count as one.
             self.statistics.gpu += time;
             self.statistics.timed += u64::from(index == 0);
         }
-        Ok(eyes)
+        if let Some(reason) = synthesis.no_vectors {
+            self.tell(session, NO_VECTORS, reason);
+        }
+        Ok(synthesis.eyes)
     }
 
-    /// Counts a layer that is shown unchanged to both eyes. Logs each kind of reason once.
+    /// Counts a layer that is shown unchanged to both eyes.
     fn fall_back(&mut self, session: &Session, reason: Reason) {
         self.statistics.fallbacks += 1;
-        if self.told.insert(std::mem::discriminant(&reason)) {
-            say(format_args!("{}: the same image for both eyes: {reason}", session.instance.application));
+        self.tell(session, "the same image for both eyes", reason);
+    }
+
+    /// Logs each kind of reason once.
+    fn tell(&mut self, session: &Session, what: &'static str, reason: Reason) {
+        if self.told.insert((what, std::mem::discriminant(&reason))) {
+            say(format_args!("{}: {what}: {reason}", session.instance.application));
         }
     }
 

@@ -8,16 +8,38 @@ use yoro::eyes::Eye;
 use super::chain::sub_image;
 use super::rewrite::Eyes;
 use super::target::Acquired;
+use super::vectors::EyeVectors;
 use crate::geometry::{Rectangle, Split, pose, xr_fov, xr_pose};
 use crate::swapchain::Swapchain;
+
+/// Two images that the application submits. While it shows them again, they stay equal.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Images {
+    /// Swapchain, array layer and rectangle of each.
+    parts: [(sys::Swapchain, u32, [i32; 4]); 2],
+    /// The number of releases of their images. The images are unchanged while it stays the same.
+    releases: [u64; 2],
+}
+
+impl Images {
+    pub fn new(swapchains: &[Arc<Swapchain>], images: [&sys::SwapchainSubImage; 2]) -> Images {
+        let parts = images.map(|part| {
+            let sys::Rect2Di { offset, extent } = part.image_rect;
+            (part.swapchain, part.image_array_index, [offset.x, offset.y, extent.width, extent.height])
+        });
+        let releases = images.map(|part| {
+            let swapchain = swapchains.iter().find(|swapchain| swapchain.handle == part.swapchain);
+            swapchain.map_or(0, |swapchain| swapchain.releases())
+        });
+        Images { parts, releases }
+    }
+}
 
 /// The inputs of a synthesized image, except for the pose.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Key {
-    /// Swapchain, array layer and rectangle of colour and of depth.
-    parts: [(sys::Swapchain, u32, [i32; 4]); 2],
-    /// The number of releases of their images. The images are unchanged while it stays the same.
-    releases: [u64; 2],
+    /// Colour and depth.
+    images: Images,
     fov: [f32; 4],
     planes: [f32; 4],
     upside_down: bool,
@@ -30,19 +52,11 @@ impl Key {
         info: &sys::CompositionLayerDepthInfoKHR,
         upside_down: bool,
     ) -> Key {
-        let images = [&view.sub_image, &info.sub_image];
-        let parts = images.map(|part| {
-            let sys::Rect2Di { offset, extent } = part.image_rect;
-            (part.swapchain, part.image_array_index, [offset.x, offset.y, extent.width, extent.height])
-        });
-        let releases = images.map(|part| {
-            let swapchain = swapchains.iter().find(|swapchain| swapchain.handle == part.swapchain);
-            swapchain.map_or(0, |swapchain| swapchain.releases())
-        });
+        let images = Images::new(swapchains, [&view.sub_image, &info.sub_image]);
         let sys::Fovf { angle_left, angle_right, angle_up, angle_down } = view.fov;
         let fov = [angle_left, angle_right, angle_up, angle_down];
         let planes = [info.near_z, info.far_z, info.min_depth, info.max_depth];
-        Key { parts, releases, fov, planes, upside_down }
+        Key { images, fov, planes, upside_down }
     }
 }
 
@@ -56,6 +70,8 @@ pub struct Synthesized {
     /// Colour and depth of the other eye.
     pub color: Acquired,
     pub depth: Option<Acquired>,
+    /// The vectors of both eyes, if the application submitted some that could be moved.
+    pub vectors: Option<EyeVectors>,
 }
 
 impl Synthesized {
@@ -103,6 +119,6 @@ impl Synthesized {
                 ..*info
             })
         });
-        Eyes { views, depths }
+        Eyes { views, depths, motions: None }
     }
 }

@@ -11,7 +11,8 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use glow::HasContext as _;
-use yoro::opengl::{Context, Destination, Gather, GlApi, GlError, GlState, Options, Outputs, Source};
+use yoro::opengl::{Context, Destination, GlApi, GlError, GlState, Options, Outputs, Pipeline, Source};
+use yoro::synthesis::backend::WarpKind;
 
 pub use binding::{Binding, Current};
 
@@ -21,16 +22,16 @@ use crate::synthesizer::{self, Image, Job};
 use timer::Timer;
 
 /// The pipeline in the application's context.
-pub struct Synthesizer {
+pub struct Synthesizer<W: WarpKind> {
     binding: Binding,
     /// Deleted only while the context is current.
-    objects: ManuallyDrop<Objects>,
+    objects: ManuallyDrop<Objects<W>>,
 }
 
 /// The objects in the context. They are used only while it is current.
-struct Objects {
+struct Objects<W> {
     context: Rc<Context>,
-    pipeline: Option<(Outputs, Gather)>,
+    pipeline: Option<(Outputs, Pipeline<W>)>,
     /// Framebuffers by the colour and depth that are attached to them.
     targets: Vec<([Option<Image>; 2], glow::Framebuffer)>,
     /// Copies of colour and depth, used if only a part of an image is submitted.
@@ -47,14 +48,14 @@ struct Copy {
 
 // SAFETY: the objects of a context are used only while it is current, on one thread at a time, and so are the reference
 // counts next to them: `Frames` is locked meanwhile.
-unsafe impl Send for Synthesizer {}
+unsafe impl<W: WarpKind> Send for Synthesizer<W> {}
 
-impl Synthesizer {
+impl<W: WarpKind> Synthesizer<W> {
     /// Creates a pipeline in the context.
     ///
     /// # Safety
     /// The binding's context exists until this is dropped.
-    pub unsafe fn new(binding: Binding) -> Result<Synthesizer, Reason> {
+    pub unsafe fn new(binding: Binding) -> Result<Synthesizer<W>, Reason> {
         // SAFETY: the context exists and is current; these are its entry points.
         let objects = unsafe {
             let _current = binding.make_current()?;
@@ -67,7 +68,7 @@ impl Synthesizer {
     }
 }
 
-impl Drop for Synthesizer {
+impl<W: WarpKind> Drop for Synthesizer<W> {
     fn drop(&mut self) {
         // SAFETY: the context exists, and its objects are no longer used. If it is current elsewhere, they remain until
         // it is destroyed.
@@ -80,8 +81,8 @@ impl Drop for Synthesizer {
     }
 }
 
-impl synthesizer::Synthesizer for Synthesizer {
-    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
+impl<W: WarpKind> synthesizer::Synthesizer<W> for Synthesizer<W> {
+    unsafe fn synthesize(&mut self, job: &Job<W>) -> Result<Option<Duration>, Reason> {
         // SAFETY: the context exists, and its images are not in use.
         unsafe {
             let _current = self.binding.make_current()?;
@@ -135,8 +136,8 @@ fn bind_framebuffers(gl: &glow::Context, [draw, read]: [Option<glow::Framebuffer
     }
 }
 
-impl Objects {
-    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
+impl<W: WarpKind> Objects<W> {
+    unsafe fn synthesize(&mut self, job: &Job<W>) -> Result<Option<Duration>, Reason> {
         let context = Rc::clone(&self.context);
         let context = &*context;
         let _silence = Silence::begin(context);
@@ -152,12 +153,12 @@ impl Objects {
             Some((made_for, pipeline)) if *made_for == outputs => pipeline,
             other => {
                 let options = Options { gl_state: GlState::Preserve, ..Options::default() };
-                let pipeline = Gather::new(&self.context, &options, outputs)?;
+                let pipeline = Pipeline::new(&self.context, &options, outputs)?;
                 &mut other.insert((outputs, pipeline)).1
             }
         };
         let target =
-            Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: job.warp.target_size };
+            Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: job.warp.sizes()[1] };
         let timing = self.timer.as_mut().and_then(|timer| timer.begin(context));
         let result = pipeline.synthesize(source, job.warp, &target);
         if let Some(timing) = timing {

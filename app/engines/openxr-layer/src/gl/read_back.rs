@@ -2,13 +2,14 @@
 
 use glow::HasContext as _;
 use yoro::opengl::{Destination, GlApi};
+use yoro::synthesis::backend::WarpKind;
 
 use super::{Objects, Synthesizer, bind_framebuffers, bound_framebuffers};
 use crate::geometry::Rectangle;
 use crate::reason::Reason;
 use crate::synthesizer::Image;
 
-impl Synthesizer {
+impl<W: WarpKind> Synthesizer<W> {
     /// Reads a rectangle of a colour image as red, green and blue.
     ///
     /// # Errors
@@ -34,7 +35,7 @@ impl Synthesizer {
     }
 }
 
-impl Objects {
+impl<W: WarpKind> Objects<W> {
     /// Returns four bytes per pixel, with rows from the bottom.
     unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
         // SAFETY: same contract.

@@ -10,8 +10,9 @@ use std::time::Duration;
 use ash::vk;
 use ash::vk::Handle as _;
 use openxr_sys as sys;
+use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::{
-    Frame, Gather, Host, ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages,
+    Frame, Host, ImageState, LayerImage, Options, Pipeline, SourceId, SourceImages, TargetId, TargetImages,
 };
 
 #[cfg(feature = "capture")]
@@ -46,10 +47,10 @@ impl Binding {
     }
 }
 
-/// Command buffers and the pipeline, for one session.
-pub struct Synthesizer {
+/// Command buffers and a pipeline, for one session.
+pub struct Synthesizer<W> {
     // Declared before the other objects of the device, because it must be dropped first.
-    gather: Option<(Gather, Options)>,
+    pipeline: Option<(Pipeline<W>, Options)>,
     sources: Vec<([Image; 2], SourceId)>,
     targets: Vec<([Option<Image>; 2], TargetId)>,
     instance: ash::Instance,
@@ -75,12 +76,12 @@ fn entry() -> Option<&'static ash::Entry> {
     ENTRY.get_or_init(|| unsafe { ash::Entry::load().ok() }).as_ref()
 }
 
-impl Synthesizer {
+impl<W: WarpKind> Synthesizer<W> {
     /// Creates command buffers on the device.
     ///
     /// # Safety
     /// The binding's handles are valid until this is dropped.
-    pub unsafe fn new(binding: Binding) -> Result<Synthesizer, Reason> {
+    pub unsafe fn new(binding: Binding) -> Result<Synthesizer<W>, Reason> {
         let entry = entry().ok_or(Reason::NoLibrary("Vulkan's loader"))?;
         // SAFETY: handles of the application's session.
         let (instance, device) = unsafe {
@@ -97,7 +98,7 @@ impl Synthesizer {
             let pool = device.create_command_pool(&info, None).map_err(Reason::Vulkan)?;
             // From here on, dropping the synthesizer destroys what was created.
             let mut synthesizer = Synthesizer {
-                gather: None,
+                pipeline: None,
                 sources: Vec::new(),
                 targets: Vec::new(),
                 instance,
@@ -123,10 +124,10 @@ impl Synthesizer {
     }
 
     /// Creates a pipeline for the formats and sizes of a job, unless the existing one fits.
-    unsafe fn make_gather(&mut self, job: &Job) -> Result<(), Reason> {
+    unsafe fn make_pipeline(&mut self, job: &Job<W>) -> Result<(), Reason> {
         let [source, target] = [job.color.size, job.target.size];
         let fits = |limit: [u32; 2], size: [u32; 2]| limit[0] >= size[0] && limit[1] >= size[1];
-        if let Some((_, options)) = &self.gather
+        if let Some((_, options)) = &self.pipeline
             && options.color_format == vk_format(job.target)
             && options.depth_format == job.target_depth.map(vk_format)
             && fits(options.max_source_size, source)
@@ -135,7 +136,7 @@ impl Synthesizer {
             return Ok(());
         }
         self.wait_for_all();
-        self.gather = None;
+        self.pipeline = None;
         self.sources.clear();
         self.targets.clear();
         let options = Options {
@@ -156,35 +157,35 @@ impl Synthesizer {
             debug_utils: false,
         };
         // SAFETY: the handles are valid until this is dropped, which waits for its commands.
-        let gather = unsafe { Gather::new(&host, &options).map_err(Reason::Synthesis)? };
-        self.gather = Some((gather, options));
+        let pipeline = unsafe { Pipeline::new(&host, &options).map_err(Reason::Synthesis)? };
+        self.pipeline = Some((pipeline, options));
         Ok(())
     }
 
-    unsafe fn source(&mut self, job: &Job) -> Result<SourceId, Reason> {
+    unsafe fn source(&mut self, job: &Job<W>) -> Result<SourceId, Reason> {
         let key = [job.color, job.depth];
         if let Some((_, id)) = self.sources.iter().find(|(source, _)| *source == key) {
             return Ok(*id);
         }
-        let gather = made(&mut self.gather)?;
+        let pipeline = made(&mut self.pipeline)?;
         let color = layer_image(job.color, ImageState::COLOR_ATTACHMENT, ImageState::COLOR_ATTACHMENT);
         let depth = layer_image(job.depth, ImageState::DEPTH_ATTACHMENT, ImageState::DEPTH_ATTACHMENT);
         let images = SourceImages::new(color, depth, job.color.size);
         // SAFETY: live images, which are forgotten before they are destroyed.
-        let id = unsafe { gather.register_source(&images) }.map_err(Reason::Synthesis)?;
+        let id = unsafe { pipeline.register_source(&images) }.map_err(Reason::Synthesis)?;
         self.sources.push((key, id));
         Ok(id)
     }
 
-    unsafe fn target(&mut self, job: &Job) -> Result<TargetId, Reason> {
+    unsafe fn target(&mut self, job: &Job<W>) -> Result<TargetId, Reason> {
         let key = [Some(job.target), job.target_depth];
         if let Some((_, id)) = self.targets.iter().find(|(known, _)| *known == key) {
             return Ok(*id);
         }
-        let gather = made(&mut self.gather)?;
+        let pipeline = made(&mut self.pipeline)?;
         // SAFETY: live images, which are forgotten before they are destroyed.
         let id = unsafe {
-            gather.register_target(&TargetImages {
+            pipeline.register_target(&TargetImages {
                 color: layer_image(job.target, ImageState::DISCARDED, ImageState::COLOR_ATTACHMENT),
                 depth: job
                     .target_depth
@@ -247,7 +248,9 @@ impl Synthesizer {
             }
         }
     }
+}
 
+impl<W> Synthesizer<W> {
     fn wait_for_all(&self) {
         for slot in self.slots.iter().filter(|slot| !slot.fence.is_null()) {
             // SAFETY: this device's fence. Errors are ignored, since waiting for a lost or hanging device is pointless.
@@ -260,22 +263,22 @@ impl Synthesizer {
     }
 }
 
-impl synthesizer::Synthesizer for Synthesizer {
-    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
+impl<W: WarpKind + Send> synthesizer::Synthesizer<W> for Synthesizer<W> {
+    unsafe fn synthesize(&mut self, job: &Job<W>) -> Result<Option<Duration>, Reason> {
         let slot = self.slots[self.frame % FRAMES];
         // SAFETY: commands and images are this device's, and the slot's commands are not pending.
         unsafe {
             self.wait_for(slot)?;
-            self.make_gather(job)?;
+            self.make_pipeline(job)?;
             let (source, target) = (self.source(job)?, self.target(job)?);
             self.begin(slot)?;
-            let gather = made(&mut self.gather)?;
+            let pipeline = made(&mut self.pipeline)?;
             let frame = Frame { source_origin: job.source.origin, ..Frame::new(source, target) };
-            gather.record(slot.commands, &frame, job.warp).map_err(Reason::Synthesis)?;
+            pipeline.record(slot.commands, &frame, job.warp).map_err(Reason::Synthesis)?;
             self.device.end_command_buffer(slot.commands).map_err(Reason::Vulkan)?;
             self.submit(slot)?;
             // An error here only means that no times are known.
-            let times = made(&mut self.gather)?.pass_times().ok().flatten();
+            let times = made(&mut self.pipeline)?.pass_times().ok().flatten();
             Ok(times.map(|times| times.tiles + times.spans + times.march))
         }
     }
@@ -288,12 +291,12 @@ impl synthesizer::Synthesizer for Synthesizer {
             return;
         }
         self.wait_for_all();
-        let Some((gather, _)) = &mut self.gather else { return };
+        let Some((pipeline, _)) = &mut self.pipeline else { return };
         self.sources.retain(|(source, id)| {
             let keep = !source.iter().any(uses);
             if !keep {
                 // SAFETY: no command is pending.
-                unsafe { gather.release_source(*id) };
+                unsafe { pipeline.release_source(*id) };
             }
             keep
         });
@@ -301,7 +304,7 @@ impl synthesizer::Synthesizer for Synthesizer {
             let keep = !target.iter().flatten().any(uses);
             if !keep {
                 // SAFETY: no command is pending.
-                unsafe { gather.release_target(*id) };
+                unsafe { pipeline.release_target(*id) };
             }
             keep
         });
@@ -315,8 +318,8 @@ impl synthesizer::Synthesizer for Synthesizer {
 }
 
 /// Returns the pipeline, which must have been created.
-fn made(gather: &mut Option<(Gather, Options)>) -> Result<&mut Gather, Reason> {
-    gather.as_mut().map(|(gather, _)| gather).ok_or(Reason::Panic)
+fn made<W>(made: &mut Option<(Pipeline<W>, Options)>) -> Result<&mut Pipeline<W>, Reason> {
+    made.as_mut().map(|(pipeline, _)| pipeline).ok_or(Reason::Panic)
 }
 
 fn vk_image(image: Image) -> vk::Image {
@@ -331,10 +334,10 @@ fn layer_image(image: Image, before: ImageState, after: ImageState) -> LayerImag
     LayerImage { image: vk_image(image), format: vk_format(image), layer: image.layer, before, after }
 }
 
-impl Drop for Synthesizer {
+impl<W> Drop for Synthesizer<W> {
     fn drop(&mut self) {
         self.wait_for_all();
-        self.gather = None;
+        self.pipeline = None;
         // SAFETY: this device's objects, which no command uses.
         unsafe {
             for slot in &self.slots {

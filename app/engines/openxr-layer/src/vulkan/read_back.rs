@@ -1,6 +1,7 @@
 //! Reads images back. For tests.
 
 use ash::vk;
+use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ImageState;
 
 use super::{FRAMES, Synthesizer, vk_format, vk_image};
@@ -8,7 +9,7 @@ use crate::geometry::Rectangle;
 use crate::reason::Reason;
 use crate::synthesizer::Image;
 
-impl Synthesizer {
+impl<W: WarpKind> Synthesizer<W> {
     /// Reads a rectangle of a colour image as red, green and blue.
     ///
     /// # Errors
