@@ -11,7 +11,7 @@ use yoro::vulkan::ash::vk;
 use yoro::vulkan::ash::vk::Handle as _;
 use yoro_context::{Backend, Binding, Graphics as _, Headless, HeadlessGraphics};
 
-use crate::client::Part;
+use crate::client::{Part, VECTORS};
 use crate::harness::{self, Gpu};
 use crate::world;
 
@@ -85,6 +85,11 @@ impl Gles<'_> {
 
     pub fn upload_color(&self, texture: u64, part: Part, rgba: &[u8]) {
         self.upload(texture, part, [glow::RGBA, glow::UNSIGNED_BYTE], rgba);
+    }
+
+    pub fn upload_vectors(&self, texture: u64, part: Part, vectors: &[[f32; 4]]) {
+        let bytes: Vec<u8> = vectors.iter().flatten().flat_map(|number| number.to_ne_bytes()).collect();
+        self.upload(texture, part, [glow::RGBA, glow::FLOAT], &bytes);
     }
 
     pub fn upload_depth(&self, texture: u64, part: Part, stored: &[f32]) {
@@ -195,6 +200,7 @@ impl Drawing<'_> {
         match self {
             Drawing::Vulkan(_) => format.as_raw().into(),
             Drawing::Gles(_) if harness::is_depth(format) => glow::DEPTH_COMPONENT32F.into(),
+            Drawing::Gles(_) if format == VECTORS => glow::RGBA16F.into(),
             Drawing::Gles(_) => glow::SRGB8_ALPHA8.into(),
         }
     }

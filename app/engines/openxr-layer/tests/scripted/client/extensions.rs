@@ -33,6 +33,34 @@ impl Client<'_> {
         Ok(ranges.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
     }
 
+    /// Returns the sizes of motion vectors that are recommended for the configuration's views.
+    pub fn vector_sizes(&self, count: usize) -> Outcome<Vec<[u32; 2]>> {
+        // SAFETY: plain data; the types and chains are set below.
+        let (empty, empty_view) =
+            unsafe { (std::mem::zeroed::<sys::FrameSynthesisConfigViewEXT>(), std::mem::zeroed()) };
+        let ty = sys::FrameSynthesisConfigViewEXT::TYPE;
+        let mut sizes = vec![sys::FrameSynthesisConfigViewEXT { ty, ..empty }; count];
+        let view = |size: &mut sys::FrameSynthesisConfigViewEXT| sys::ViewConfigurationView {
+            ty: sys::ViewConfigurationView::TYPE,
+            next: ptr::from_mut(size).cast(),
+            ..empty_view
+        };
+        let mut views: Vec<_> = sizes.iter_mut().map(view).collect();
+        let (mut number, room) = (0, count as u32);
+        let call = self.xr.enumerate_view_configuration_views;
+        // SAFETY: room for as many elements as stated.
+        let result =
+            unsafe { call(self.instance, self.system, self.views, room, &mut number, views.as_mut_ptr()) };
+        check("xrEnumerateViewConfigurationViews", result)?;
+        let size = |size: &sys::FrameSynthesisConfigViewEXT| {
+            [
+                size.recommended_motion_vector_image_rect_width,
+                size.recommended_motion_vector_image_rect_height,
+            ]
+        };
+        Ok(sizes.iter().map(size).collect())
+    }
+
     /// Returns what the runtime writes to structures chained to the located views.
     pub fn chained_to_located(&self, frame: Frame, count: usize) -> Outcome<Vec<[f32; 2]>> {
         // SAFETY: plain data; the types and chains are set below.
