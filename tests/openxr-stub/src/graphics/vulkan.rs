@@ -271,18 +271,13 @@ impl Graphics for Vulkan {
     }
 
     fn read_numbers(&mut self, texture: Texture, layer: u32, rect: [i32; 4], _: bool) -> Option<Vec<f32>> {
-        fn depth(depth: f32) -> [f32; 4] {
-            [depth, 0.0, 0.0, 0.0]
-        }
-        let (size, numbers): (usize, fn(&[u8]) -> [f32; 4]) = match self.images.get(&texture.raw)?.format {
+        type Numbers = fn(&[u8]) -> [f32; 4];
+        let (size, numbers): (usize, Numbers) = match self.images.get(&texture.raw)?.format {
             vk::Format::R16G16B16A16_SFLOAT => {
                 (8, |texel| [0, 2, 4, 6].map(|i| f16::from_ne_bytes([texel[i], texel[i + 1]]).to_f32()))
             }
             vk::Format::D32_SFLOAT => {
-                (4, |texel| depth(f32::from_ne_bytes([texel[0], texel[1], texel[2], texel[3]])))
-            }
-            vk::Format::D16_UNORM => {
-                (2, |texel| depth(f32::from(u16::from_ne_bytes([texel[0], texel[1]])) / f32::from(u16::MAX)))
+                (4, |texel| [f32::from_ne_bytes([texel[0], texel[1], texel[2], texel[3]]), 0.0, 0.0, 0.0])
             }
             _ => return None,
         };

@@ -121,9 +121,7 @@ impl Level {
         let dominant = offer.eyes.dominant;
         let vectors = motion.map(|motion| {
             // SAFETY: a structure in the submitted view's chain.
-            unsafe {
-                self.vectors.make(session, binding, swapchains, &motion, former, (&source, &split), dominant)
-            }
+            unsafe { self.vectors.make(session, binding, swapchains, &motion, former, (&source, &split)) }
         });
         let (vectors, no_vectors) = match vectors.transpose() {
             Ok(made) => {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use openxr_sys as sys;
-use yoro::eyes::{Eye, MotionWarp};
+use yoro::eyes::MotionWarp;
 
 use super::chain::sub_image;
 use super::level::{COLOR, DEPTH};
@@ -34,7 +34,7 @@ pub struct Vectors {
 pub struct EyeVectors {
     /// The application's images that they were made of.
     images: Images,
-    /// Images of vectors and depth, and their scaling, by [`Eye::index`].
+    /// Images of vectors and depth, and their scaling, by [`Eye::index`](yoro::eyes::Eye::index).
     eyes: [([sys::SwapchainSubImage; 2], Scaling); 2],
 }
 
@@ -59,7 +59,6 @@ impl Vectors {
         info: &MotionInfo,
         former: Option<Place>,
         (source, split): (&Source, &Split),
-        dominant: Eye,
     ) -> Result<(EyeVectors, Option<Duration>), Reason> {
         let whats = ["the image of motion vectors", "the depth of motion vectors"];
         let (contents, images, part) = submitted_images(swapchains, info.images(), whats)?;
@@ -95,7 +94,7 @@ impl Vectors {
             made[which] = [target(vectors), depth.map_or(own_crop[DEPTH], target)];
         }
         let mut eyes = [(made[1], motion.scalings[1]); 2];
-        eyes[dominant.index()] = (made[0], motion.scalings[0]);
+        eyes[session.instance.settings.dominant.index()] = (made[0], motion.scalings[0]);
         Ok((EyeVectors { images: Images::new(swapchains, info.images()), eyes }, time))
     }
 }

@@ -129,11 +129,11 @@ impl Vectors {
 const FRAMES: u32 = 6;
 
 /// Runs an application of this many views that submits motion vectors, after a frame without. `change` changes what it submits
-/// in a frame, counted from 0.
+/// in a frame, counted from 0. The last one is submitted once more if `again` is true.
 fn run(
     drawing: Drawing,
     script: Script,
-    (by, views): (By, usize),
+    (by, views, again): (By, usize, bool),
     change: impl Fn(u32, Submitted) -> Submitted,
 ) -> Seen {
     let habits = Habits::PLAIN;
@@ -179,6 +179,10 @@ fn run(
             assert!(with < 4 || made == 0, "the layer allocates {made} times in a frame");
             with += u32::from(former.is_some());
             former = Some(located);
+            if again && with == FRAMES {
+                let frame = client.begin_frame().unwrap();
+                client.end_frame(frame, &layers).unwrap();
+            }
         }
         client.destroy_session().unwrap();
     })
@@ -202,8 +206,8 @@ fn between(seen: &Seen, script: &Script) -> [[f64; 2]; 2] {
 fn the_frames_between(drawing: Drawing) {
     let script = moving(drawing);
     for by in [By::FrameSynthesis, By::SpaceWarp] {
-        let two = between(&run(drawing, script.clone(), (by, 2), |_, submitted| submitted), &script);
-        let seen = run(drawing, script.clone(), (by, 1), |_, submitted| submitted);
+        let two = between(&run(drawing, script.clone(), (by, 2, false), |_, submitted| submitted), &script);
+        let seen = run(drawing, script.clone(), (by, 1, false), |_, submitted| submitted);
         assert_counts(&seen, &[[u64::from(FRAMES) + 1, 0]], by.name().to_str().unwrap());
         assert_eq!(seen.said("motion vectors"), 0, "{}", seen.said);
         let made = between(&seen, &script);
@@ -247,8 +251,8 @@ fn synthesis(submitted: Submitted, change: impl Fn(&mut sys::FrameSynthesisInfoE
 fn what_is_said_of_vectors_is_said_of_both_eyes() {
     with_gles(|gles| {
         let (drawing, script) = (gles.into(), moving(gles.into()));
-        let right = between(&run(drawing, script.clone(), (By::FrameSynthesis, 1), |_, s| s), &script);
-        let seen = run(drawing, script.clone(), (By::FrameSynthesis, 1), |_, submitted| {
+        let right = between(&run(drawing, script.clone(), (By::FrameSynthesis, 1, false), |_, s| s), &script);
+        let seen = run(drawing, script.clone(), (By::FrameSynthesis, 1, false), |_, submitted| {
             synthesis(submitted, |info| {
                 info.motion_vector_scale.x = -1.0;
                 info.motion_vector_offset.y = 0.25;
@@ -270,7 +274,7 @@ fn what_is_said_of_vectors_is_said_of_both_eyes() {
             }
             Submitted { motion: Some(Motion::SpaceWarp(info)), ..submitted }
         };
-        let seen = run(drawing, script, (By::SpaceWarp, 1), skips);
+        let seen = run(drawing, script, (By::SpaceWarp, 1, false), skips);
         assert_counts(&seen, &[[u64::from(FRAMES) + 1, 0]], "skipped");
         let skipped = seen.views().iter().map(|view| view.synthesis.as_ref().unwrap().is_skipped);
         assert_eq!(skipped.collect::<Vec<_>>(), [true, true]);
@@ -297,7 +301,7 @@ fn vectors_that_cannot_be_moved_are_left_out() {
     with_gles(|gles| {
         for (reason, spoil) in cases {
             let script = Script { pictures: None, ..moving(gles.into()) };
-            let seen = run(gles.into(), script, (By::FrameSynthesis, 1), |_, s| synthesis(s, spoil));
+            let seen = run(gles.into(), script, (By::FrameSynthesis, 1, false), |_, s| synthesis(s, spoil));
             assert_counts(&seen, &[[u64::from(FRAMES) + 1, 0]], reason);
             assert_eq!(seen.said("shown without its motion vectors"), 1, "{reason}: {}", seen.said);
             assert_eq!(seen.said(reason), 1, "{reason}: {}", seen.said);
@@ -313,7 +317,7 @@ fn a_runtime_that_refuses_vectors_gets_none() {
         // Two frames are empty, and the third has no vectors.
         let refuses = faulty("xrEndFrame", 5, sys::Result::ERROR_VALIDATION_FAILURE);
         let script = Script { faults: refuses.faults, pictures: None, ..moving(gles.into()) };
-        let seen = run(gles.into(), script, (By::SpaceWarp, 1), |_, submitted| submitted);
+        let seen = run(gles.into(), script, (By::SpaceWarp, 1, false), |_, submitted| submitted);
         assert_counts(&seen, &[[u64::from(FRAMES) + 1, 0]], "refused");
         assert_eq!(seen.said("without its motion vectors: xrEndFrame fails with"), 1, "{}", seen.said);
         let with: Vec<usize> = seen
@@ -322,5 +326,20 @@ fn a_runtime_that_refuses_vectors_gets_none() {
             .map(|layers| views_of(layers).iter().filter(|view| view.synthesis.is_some()).count())
             .collect();
         assert_eq!(with, [0, 2, 0, 2, 2, 2, 2], "{}", seen.said);
+    });
+}
+
+/// Applications at half the display's rate may submit each image twice.
+#[test]
+fn an_image_that_is_shown_again_has_its_vectors() {
+    with_gles(|gles| {
+        let script = Script { pictures: None, ..moving(gles.into()) };
+        let seen = run(gles.into(), script, (By::SpaceWarp, 1, true), |_, submitted| submitted);
+        assert_counts(&seen, &[[u64::from(FRAMES) + 2, 0]], "shown again");
+        let frames = seen.frames();
+        let [.., last, again] = frames.as_slice() else { panic!("{} frames", frames.len()) };
+        let vectors = |layers| views_of(layers).iter().map(|view| view.synthesis.clone()).collect::<Vec<_>>();
+        assert!(vectors(again).iter().all(Option::is_some), "{}", seen.said);
+        assert_eq!(vectors(last), vectors(again));
     });
 }
