@@ -395,7 +395,7 @@ impl ForeignTarget {
         Ok(target)
     }
 
-    /// Attaches a texture for depth beside the colour, in place of the last one.
+    /// Attaches a texture for depth beside the colour.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver cannot render to both.

@@ -38,6 +38,8 @@ pub(super) struct Images {
     // Dropped first: the framebuffers refer to the swapchain's images.
     /// Indexed by image and layer.
     framebuffers: Vec<Vec<ForeignTarget>>,
+    /// Those with an image of another swapchain as depth: by image, layer and the other's image.
+    with_depth: Vec<([usize; 3], ForeignTarget)>,
     textures: Vec<glow::Texture>,
     swapchain: xr::Swapchain<xr::OpenGlEs>,
     instance: xr::Instance,
@@ -108,6 +110,7 @@ impl Images {
         });
         Ok(Images {
             framebuffers: framebuffers.collect::<Result<_, _>>()?,
+            with_depth: Vec::new(),
             textures,
             swapchain,
             instance: session.instance().clone(),
@@ -164,6 +167,7 @@ impl Images {
     /// Deletes the framebuffers, after which nothing can be drawn.
     pub fn close(&mut self) {
         self.framebuffers.clear();
+        self.with_depth.clear();
     }
 
     /// Returns the destination for a layer of the acquired image.
@@ -172,20 +176,30 @@ impl Images {
         Some(image.get(layer as usize)?.part(size))
     }
 
-    /// Attaches a layer of another swapchain's acquired image as depth, and returns the destination for both.
+    /// Returns the destination for a layer of the acquired image and of another swapchain's as depth. Its framebuffer is made
+    /// when the two images are first acquired together.
     fn with_depth(
-        &self,
-        gl: &Context,
+        &mut self,
+        gl: &Rc<Context>,
         (layer, size): (u32, [u32; 2]),
         (depth, depth_layer): (&Images, u32),
     ) -> Result<Option<Destination>, GlError> {
-        let target = self.current.and_then(|current| self.framebuffers.get(current)?.get(layer as usize));
-        let texture = depth.current.and_then(|current| depth.textures.get(current));
-        let Some((target, texture)) = target.zip(texture) else { return Ok(None) };
-        let depth_layer = (depth.kind.layers > 1).then_some(depth_layer);
-        // SAFETY: the texture lives as long as its swapchain, which is closed together with the framebuffers.
-        unsafe { target.attach_depth(gl, *texture, depth_layer) }?;
-        Ok(Some(target.part(size)))
+        let Some((color, with)) = self.current.zip(depth.current) else { return Ok(None) };
+        let key = [color, layer as usize, with];
+        if let Some((_, target)) = self.with_depth.iter().find(|(known, _)| *known == key) {
+            return Ok(Some(target.part(size)));
+        }
+        let of = |images: &Images, layer| (images.kind.layers > 1).then_some(layer);
+        // SAFETY: the textures live as long as their swapchains, which are closed together with the framebuffers.
+        let target = unsafe {
+            let target =
+                ForeignTarget::new(gl, self.textures[color], of(self, layer), false, self.kind.size)?;
+            target.attach_depth(gl, depth.textures[with], of(depth, depth_layer))?;
+            target
+        };
+        let part = target.part(size);
+        self.with_depth.push((key, target));
+        Ok(Some(part))
     }
 
     /// Returns the acquired image, if it is a plain 2-D texture of 8-bit sRGB.
@@ -241,12 +255,14 @@ impl EyeImages {
         self.0.len() == 1
     }
 
+    /// Returns the index of an eye's swapchain, and its layer.
+    fn place(&self, eye: Eye) -> (usize, u32) {
+        if self.is_array() { (0, eye.index() as u32) } else { (eye.index(), 0) }
+    }
+
     fn of(&self, eye: Eye) -> (&Images, u32) {
-        match self.0.as_slice() {
-            [_, right] if eye == Eye::Right => (right, 0),
-            [left, ..] if left.kind.layers == 1 => (left, 0),
-            _ => (&self.0[0], eye.index() as u32),
-        }
+        let (swapchain, layer) = self.place(eye);
+        (&self.0[swapchain], layer)
     }
 
     pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
@@ -272,14 +288,14 @@ impl EyeImages {
 
     /// Returns the destinations of both eyes, with the depth of other images.
     pub fn with_depth(
-        &self,
-        gl: &Context,
+        &mut self,
+        gl: &Rc<Context>,
         depth: &EyeImages,
         size: [u32; 2],
     ) -> Result<Option<[Destination; 2]>, GlError> {
-        let of = |eye| {
-            let (images, layer) = self.of(eye);
-            images.with_depth(gl, (layer, size), depth.of(eye))
+        let mut of = |eye| {
+            let (swapchain, layer) = self.place(eye);
+            self.0[swapchain].with_depth(gl, (layer, size), depth.of(eye))
         };
         Ok(of(Eye::Left)?.zip(of(Eye::Right)?).map(|(left, right)| [left, right]))
     }

@@ -118,15 +118,17 @@ impl MotionImages {
     /// Returns targets that also receive vectors since the last frame; without, if there was none, or if the user has
     /// jumped since. `place` is that of the user's straight ahead in the scene.
     pub fn targets<'a>(
-        &self,
-        gl: &Context,
+        &mut self,
+        gl: &Rc<Context>,
         eyes: [EyeTarget<'a>; 2],
         place: Pose,
     ) -> Result<[EyeTarget<'a>; 2], XrError> {
         let former = self.former.filter(|former| former.place == place);
         let images = self.vectors.with_depth(gl, &self.depth, self.size)?;
         let Some((former, images)) = former.zip(images) else { return Ok(eyes) };
-        // XR_EXT_frame_synthesis has one convention, XR_FB_space_warp that of the graphics interface.
+        // XR_EXT_frame_synthesis has one convention for z, XR_FB_space_warp that of the graphics interface. The direction of y is
+        // not settled for either: as Godot found out, on OpenGL ES every runtime takes it upwards, as it is written here, while
+        // on Vulkan Android XR takes it downwards, and Meta's and Pico's upwards (its pull request 119056).
         let ndc = match self.extension {
             Extension::FrameSynthesis => Ndc::ZeroToOne,
             Extension::SpaceWarp => Ndc::MinusOneToOne,

@@ -145,12 +145,16 @@ impl Session {
         images: &LevelTargets<'static>,
     ) -> Result<Option<Drawn>, XrError> {
         let eyes = self.storage.begin(*images)?;
-        let motion = self.motion.as_ref().filter(|_| viewer.leaves_frames_to_runtime());
+        let mut motion = self.motion.as_mut().filter(|_| viewer.leaves_frames_to_runtime());
+        let leaves_frame = motion.is_some();
         let copy = self.depth_copy.as_ref();
         let (mut depth_size, mut has_motion) = (None, false);
         let mut whole = |eyes, size| {
             let eyes = self.wide.with_depth(copy, eyes, size);
-            let eyes = motion.map_or(Ok(eyes), |motion| motion.targets(&self.gl, eyes, *place))?;
+            let eyes = match &mut motion {
+                Some(motion) => motion.targets(&self.gl, eyes, *place)?,
+                None => eyes,
+            };
             (depth_size, has_motion) = (Some(size), eyes[0].motion.is_some());
             Ok::<_, XrError>(eyes)
         };
@@ -179,7 +183,6 @@ impl Session {
             }
         };
         has_motion &= viewer.has_motion();
-        let leaves_frame = motion.is_some();
         let is_former = leaves_frame && rendered.is_ok();
         if let Some(motion) = &mut self.motion {
             motion.remember(is_former.then_some((levels.wide, *place)));
