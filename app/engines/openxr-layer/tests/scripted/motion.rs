@@ -310,22 +310,32 @@ fn vectors_that_cannot_be_moved_are_left_out() {
     });
 }
 
-/// A runtime that refuses the vectors gets the frame in stereo without them.
+/// A runtime that refuses vectors, or images for them, gets the frame in stereo without them.
 #[test]
 fn a_runtime_that_refuses_vectors_gets_none() {
+    let failure = sys::Result::ERROR_RUNTIME_FAILURE;
+    // Two frames are empty, and the third has no vectors. The application makes four swapchains, the layer two for the other
+    // eye, and then two for each eye's vectors.
+    let cases = [
+        ("xrEndFrame", 5, sys::Result::ERROR_VALIDATION_FAILURE, [0, 2, 0, 2, 2, 2, 2]),
+        ("xrEndFrame", 4, sys::Result::ERROR_LAYER_INVALID, [0, 0, 2, 2, 2, 2, 2]),
+        ("xrCreateSwapchain", 7, failure, [0, 0, 2, 2, 2, 2, 2]),
+        ("xrCreateSwapchain", 10, failure, [0, 0, 2, 2, 2, 2, 2]),
+    ];
     with_gles(|gles| {
-        // Two frames are empty, and the third has no vectors.
-        let refuses = faulty("xrEndFrame", 5, sys::Result::ERROR_VALIDATION_FAILURE);
-        let script = Script { faults: refuses.faults, pictures: None, ..moving(gles.into()) };
-        let seen = run(gles.into(), script, (By::SpaceWarp, 1, false), |_, submitted| submitted);
-        assert_counts(&seen, &[[u64::from(FRAMES) + 1, 0]], "refused");
-        assert_eq!(seen.said("without its motion vectors: xrEndFrame fails with"), 1, "{}", seen.said);
-        let with: Vec<usize> = seen
-            .frames()
-            .iter()
-            .map(|layers| views_of(layers).iter().filter(|view| view.synthesis.is_some()).count())
-            .collect();
-        assert_eq!(with, [0, 2, 0, 2, 2, 2, 2], "{}", seen.said);
+        for (call, nth, result, expected) in cases {
+            let faults = faulty(call, nth, result).faults;
+            let script = Script { faults, pictures: None, ..moving(gles.into()) };
+            let seen = run(gles.into(), script, (By::SpaceWarp, 1, false), |_, submitted| submitted);
+            assert_counts(&seen, &[[u64::from(FRAMES) + 1, 0]], call);
+            let reason = format!("without its motion vectors: {call} fails with {result:?}");
+            assert_eq!(seen.said(&reason), 1, "{}", seen.said);
+            let frames = seen.frames();
+            let with = frames
+                .iter()
+                .map(|layers| views_of(layers).iter().filter(|view| view.synthesis.is_some()).count());
+            assert_eq!(with.collect::<Vec<_>>(), expected, "{call}, {nth}: {}", seen.said);
+        }
     });
 }
 
