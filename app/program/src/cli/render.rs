@@ -267,7 +267,10 @@ fn frame_stem(scene: &str, frame: usize, frames: usize) -> String {
     if frames > 1 { format!("{scene}-{frame:04}") } else { scene.to_owned() }
 }
 
-/// Warns if pictures would show nothing of the scene.
+/// Largest number of frames, spread over all, that [`warn_of_blank`] tries.
+const TRIED: usize = 20;
+
+/// Warns if pictures would show nothing of the scene, by trying some of them.
 fn warn_of_blank(
     gl: &Rc<Context>,
     args: &RenderArgs,
@@ -276,7 +279,8 @@ fn warn_of_blank(
 ) -> anyhow::Result<()> {
     let mut finder = BlankFinder::new(gl)?;
     let mut blanks = Vec::new();
-    for &head in heads {
+    let tried: Vec<Pose> = heads.iter().copied().step_by(heads.len().div_ceil(TRIED).max(1)).collect();
+    for &head in &tried {
         interrupt::check()?;
         blanks.extend(finder.blank(prepared, &args.eyes.pair(head))?);
     }
@@ -285,7 +289,7 @@ fn warn_of_blank(
         log::warn!(
             "{} of {} frames of {} show nothing of it: {}{option}",
             blanks.len(),
-            heads.len(),
+            tried.len(),
             prepared.scene.name,
             first.remedy(&prepared.scene.name)
         );
