@@ -280,11 +280,6 @@ impl RenderTarget {
         self.gl.overwrite(&self.color_only(), self.color.len().min(2), false);
     }
 
-    /// Binds the framebuffer, for draws that overwrite all of its depth.
-    pub fn overwrite_depth(&self) {
-        self.gl.overwrite(&self.depth_only(), 0, true);
-    }
-
     /// Discards the depth, so that a tile-based GPU does not write it to memory.
     pub fn discard_depth(&self) {
         self.gl.tell(Event::Discarded { framebuffer: self.raw(), color: false, depth: true });

@@ -76,8 +76,6 @@ pub enum Event<'a> {
     },
     /// The state of the following draws, with all writes on.
     StateSet(RasterState),
-    /// Colour writes are off until the state is set again.
-    ColorMasked,
     /// Depth writes are off until the state is set again.
     DepthMasked,
     /// Only the samples of this mask are drawn; `None` for all.

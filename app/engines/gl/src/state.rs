@@ -102,14 +102,6 @@ impl Context {
         self.columns.get()
     }
 
-    /// Turns off colour writes until the state is set again, for programs that write only depth into a target with
-    /// colour. Otherwise colour would be undefined, and WebGL would refuse to draw.
-    pub fn mask_color(&self) {
-        self.tell(Event::ColorMasked);
-        // SAFETY: a state call without objects.
-        unsafe { self.raw().color_mask(false, false, false, false) }
-    }
-
     /// Limits colour writes to these channels until the state is set again.
     pub fn mask_colors(&self, [red, green, blue, alpha]: [bool; 4]) {
         // SAFETY: a state call without objects.

@@ -157,7 +157,6 @@ mod tests {
                 area: size,
                 view: size,
                 shape,
-                writes_color: true,
                 blends: false,
                 uses_depth: false,
                 writes_depth: false,

@@ -28,8 +28,6 @@ pub struct Draw {
     pub view: [u32; 2],
     /// The triangles.
     pub shape: Shape,
-    /// True if the colour attachments are written.
-    pub writes_color: bool,
     /// True if the draw is blended with the colour attachments.
     pub blends: bool,
     /// True if the depth attachment is tested or written.
@@ -88,7 +86,6 @@ struct State {
     /// The viewport that came with the framebuffer; `None` until it comes.
     view: Option<[u32; 2]>,
     raster: Option<RasterState>,
-    masks_color: bool,
     masks_depth: bool,
     masks_samples: bool,
 }
@@ -127,7 +124,6 @@ impl State {
             area: drawn(self.viewport),
             view: drawn(self.view.unwrap_or(self.viewport)),
             shape,
-            writes_color: !self.masks_color,
             blends: raster.blend != Blend::Off,
             uses_depth,
             writes_depth: uses_depth && !self.masks_depth && raster.depth != DepthTest::Equal,
@@ -184,9 +180,8 @@ impl State {
                 }
             }
             Event::StateSet(raster) => {
-                (self.raster, self.masks_color, self.masks_depth) = (Some(raster), false, false);
+                (self.raster, self.masks_depth) = (Some(raster), false);
             }
-            Event::ColorMasked => self.masks_color = true,
             Event::DepthMasked => self.masks_depth = true,
             Event::SamplesMasked(mask) => self.masks_samples = mask.is_some(),
             Event::DrawBegins(shape) => self.begin_draw(gl, shape),

@@ -158,9 +158,7 @@ impl Piece {
             t.stored |= written;
             t.touched = true;
         };
-        if draw.writes_color {
-            self.of_kind(false).for_each(|t| touch(t, covers && !draw.blends, true));
-        }
+        self.of_kind(false).for_each(|t| touch(t, covers && !draw.blends, true));
         if draw.uses_depth {
             self.of_kind(true).for_each(|t| touch(t, covers && draw.writes_depth, draw.writes_depth));
         }
@@ -320,7 +318,6 @@ mod tests {
             area: SIZE,
             view: SIZE,
             shape,
-            writes_color: true,
             blends: false,
             uses_depth: is_mesh,
             writes_depth: is_mesh,
@@ -362,9 +359,11 @@ mod tests {
             bytes([true, true], &[]),
             [named("surfaces, transparent", maps), named("resolve", 4.0 * PIXELS)]
         );
+        let depth_only =
+            Some(Rc::new(Attachments { color: Vec::new(), depth: Some(image(Format::Depth32F, 1)) }));
         let mut nearest =
-            draw("nearest depth", &resolved, Shape::Screen, &[("depth_map", image(Format::Depth32F, 4))]);
-        (nearest.writes_color, nearest.uses_depth, nearest.writes_depth) = (false, true, true);
+            draw("nearest depth", &depth_only, Shape::Screen, &[("depth_map", image(Format::Depth32F, 4))]);
+        (nearest.uses_depth, nearest.writes_depth) = (true, true);
         assert_eq!(
             bytes([true, false], &[Command::Draw(nearest)]),
             [
