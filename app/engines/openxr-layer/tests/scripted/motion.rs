@@ -1,5 +1,6 @@
 //! Motion vectors of one view, of which the layer makes those of both eyes.
 
+use std::cell::Cell;
 use std::ffi::CStr;
 
 use glam::Vec3;
@@ -7,7 +8,7 @@ use openxr_sys as sys;
 use sys::{Handle as _, ViewConfigurationType as ViewsOf};
 use yoro::eyes::DepthRange;
 use yoro_openxr_stub::log;
-use yoro_openxr_stub::script::Script;
+use yoro_openxr_stub::script::{Insets, Script};
 
 use crate::checks::{assert_counts, psnr, truth, views_of};
 use crate::client::{Chain, Client, DEPTH, Layer, Motion, Outcome, Part, Planes, Submitted, VECTORS, View};
@@ -136,11 +137,18 @@ fn run(
     (by, views, again): (By, usize, bool),
     change: impl Fn(u32, Submitted) -> Submitted,
 ) -> Seen {
-    let habits = Habits::PLAIN;
+    // Of four views, the layer replaces two.
+    let habits = Habits { name: if views == 4 { "shrink" } else { "right" }, ..Habits::PLAIN };
     let vector_size = script.vector_size;
     watched(script, || {
-        let mut client = Client::new(drawing, habits.name, &[DEPTH, by.name()]).unwrap();
-        client.views = if views == 1 { ViewsOf::PRIMARY_MONO } else { ViewsOf::PRIMARY_STEREO };
+        let insets: &[&CStr] = if views == 4 { &[c"XR_VARJO_quad_views"] } else { &[] };
+        let extensions = [&[DEPTH, by.name()], insets].concat();
+        let mut client = Client::new(drawing, habits.name, &extensions).unwrap();
+        client.views = match views {
+            1 => ViewsOf::PRIMARY_MONO,
+            2 => ViewsOf::PRIMARY_STEREO,
+            _ => ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET,
+        };
         client.create_session().unwrap();
         client.poll().unwrap();
         // XR_FB_space_warp recommends a size without regard to views.
@@ -188,17 +196,17 @@ fn run(
     })
 }
 
-/// Returns the PSNR of the frames that the runtime made for both eyes, and of those before, which a runtime without vectors
+/// Returns the PSNR of the frames that the runtime made for each view, and of those before, which a runtime without vectors
 /// shows again.
-fn between(seen: &Seen, script: &Script) -> [[f64; 2]; 2] {
-    [0, 1].map(|eye| {
-        let view = &seen.views()[eye];
+fn between(seen: &Seen, script: &Script) -> Vec<[f64; 2]> {
+    let of_view = |(eye, view): (usize, &log::View)| {
         // The application renders every second frame.
         let later = VELOCITY / script.refresh_rates[0];
         let position = (Vec3::from(view.position) + later).to_array();
         let truth = truth(&log::View { position, ..view.clone() }, 1);
         [psnr(&seen.between(eye), &truth), psnr(&seen.picture(eye), &truth)]
-    })
+    };
+    seen.views().iter().enumerate().map(of_view).collect()
 }
 
 /// The frame between, as the runtime makes it for both eyes of one view's vectors, is what they see then: as good as of two
@@ -237,6 +245,28 @@ fn both_eyes_have_motion_vectors() {
 #[test]
 fn both_eyes_have_motion_vectors_on_opengl_es() {
     with_gles(|gles| the_frames_between(gles.into()));
+}
+
+/// Views that the layer replaces have vectors, whatever the application says of theirs, and all views of a layer or none.
+#[test]
+fn the_insets_of_both_eyes_have_motion_vectors() {
+    with_gles(|gles| {
+        let insets = Some(Insets { size: [96; 2], radius_degrees: 25.0, gaze: vec![(0, [0.0; 2])] });
+        let script = Script { insets, ..moving(gles.into()) };
+        let seen = run(gles.into(), script.clone(), (By::FrameSynthesis, 4, false), |_, submitted| submitted);
+        assert_counts(&seen, &[[u64::from(FRAMES) + 1, 0]], "insets");
+        let made = between(&seen, &script);
+        println!("wide and inset, left and right: {made:.2?} dB");
+        assert!(made.len() == 4 && made.iter().all(|[made, last]| *made > last + 3.0), "{made:?}");
+
+        let of_insets = Cell::new(0);
+        let seen = run(gles.into(), script, (By::FrameSynthesis, 4, false), |_, submitted| {
+            of_insets.set(of_insets.get() + 1);
+            if of_insets.get() % 4 > 1 { submitted } else { Submitted { motion: None, ..submitted } }
+        });
+        assert_counts(&seen, &[[u64::from(FRAMES) + 1, 0]], "some insets");
+        assert!(seen.views().iter().all(|view| view.synthesis.is_none()), "{:?}", seen.views());
+    });
 }
 
 /// Changes the structure of an extension.

@@ -127,8 +127,8 @@ impl MotionImages {
         let images = self.vectors.with_depth(gl, &self.depth, self.size)?;
         let Some((former, images)) = former.zip(images) else { return Ok(eyes) };
         // XR_EXT_frame_synthesis has one convention for z, XR_FB_space_warp that of the graphics interface. The direction of y is
-        // not settled for either: as Godot found out, on OpenGL ES every runtime takes it upwards, as it is written here, while
-        // on Vulkan Android XR takes it downwards, and Meta's and Pico's upwards (its pull request 119056).
+        // open. On OpenGL ES, all runtimes on which Godot tried the former take it upwards, as it is here; on Vulkan, Android
+        // XR's takes it downwards, Meta's and Pico's upwards (Godot's pull request 119056).
         let ndc = match self.extension {
             Extension::FrameSynthesis => Ndc::ZeroToOne,
             Extension::SpaceWarp => Ndc::MinusOneToOne,
