@@ -183,7 +183,9 @@ impl StereoMethod for HalfRate {
             self.pairs = renderer.nearest_depth() == NearestDepth::Carried;
             self.synthesis[0] = Some(Synthesizer::new(&self.gl, self.pairs, false)?);
         }
-        if scene.moves() && self.moving.is_none() {
+        // Vectors are floats; where a driver cannot draw any, what moves stays where it was rendered.
+        let can_move = scene.moves() && self.gl.capabilities().float_render_targets;
+        if can_move && self.moving.is_none() {
             let options = Options { depth_pairs: self.pairs, ..Options::default() };
             self.moving = Some(Moving {
                 vectors: VectorPass::new(&self.gl, self.pairs)?,

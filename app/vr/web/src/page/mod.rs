@@ -225,7 +225,8 @@ impl Page {
     /// A sentence.
     #[wasm_bindgen(js_name = setTime)]
     pub fn set_time(&mut self, seconds: f64) -> Result<(), JsError> {
-        self.scene().map_or(Ok(()), |scene| scene.prepared.set_time(seconds)).map_err(sentence)
+        let settings = self.settings;
+        self.scene().map_or(Ok(()), |scene| scene.set_time(&settings, seconds)).map_err(sentence)
     }
 
     /// Goes to a viewpoint of the scene, or to the position from which a video was taken.

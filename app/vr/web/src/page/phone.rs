@@ -5,10 +5,9 @@ use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, Eye, EyePair, Pose};
 use yoro_gl::Destination;
 use yoro_lenses::{LensPass, Optics, neck_offset, read_qr};
-use yoro_render::stereo::{StereoFrame, StereoMethod as _};
+use yoro_render::stereo::StereoFrame;
 
 use super::error::sentence;
-use super::scene_show::SceneShow;
 use super::{Content, Page};
 use crate::sensors::{Head, find_viewer, orientation};
 
@@ -100,10 +99,9 @@ impl Phone {
         };
         match &mut page.content {
             Content::Scene(scene) => {
-                let SceneShow { prepared, method, .. } = &mut **scene;
-                method
-                    .render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame)
-                    .map_err(sentence)?;
+                self.frame.resize(pair.size).map_err(sentence)?;
+                let to = self.frame.targets();
+                scene.render_levels(&page.settings, &(&pair).into(), &(&to).into()).map_err(sentence)?;
             }
             Content::Stream(stream) => {
                 self.frame.resize(pair.size).map_err(sentence)?;

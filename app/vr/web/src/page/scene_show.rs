@@ -6,10 +6,15 @@ use yoro::choice::Cost;
 use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling, RenderTarget, Texture};
-use yoro_render::stereo::{Auto, Method, SelectedMethod, StereoError, StereoFrame, StereoMethod};
+use yoro_render::stereo::{
+    Auto, EyeLevels, LevelTargets, Method, SelectedMethod, StereoError, StereoFrame, StereoMethod,
+};
 use yoro_render::{PreparedScene, Renderer};
 
 use crate::settings::Settings;
+
+/// The part of the step between two renders at which the frame between them is.
+const BETWEEN: f32 = 0.5;
 
 /// Everything needed to show a scene.
 pub struct SceneShow {
@@ -21,6 +26,8 @@ pub struct SceneShow {
     /// The eyes of that frame.
     pair: Option<EyePair>,
     passes: Vec<PassTime>,
+    /// True if the last frame showed the render before it again.
+    is_again: bool,
 }
 
 /// A real render of both eyes, for comparison with the method's.
@@ -42,6 +49,7 @@ impl SceneShow {
             truth: None,
             pair: None,
             passes: Vec::new(),
+            is_again: false,
         })
     }
 
@@ -99,6 +107,36 @@ impl SceneShow {
             }),
         };
         truth.method.render(renderer, scene, &pair, &mut truth.frame)
+    }
+
+    /// Renders both eyes in levels; with half the rate, every second frame shows the render before it again.
+    ///
+    /// # Errors
+    /// Those of the method.
+    pub fn render_levels(
+        &mut self,
+        settings: &Settings,
+        levels: &EyeLevels,
+        to: &LevelTargets,
+    ) -> Result<(), StereoError> {
+        let may = settings.half_rate && !self.is_again;
+        self.is_again = may && self.method.show_levels_again(levels, to, BETWEEN)?;
+        if self.is_again {
+            return Ok(());
+        }
+        let PreparedScene { renderer, scene } = &mut self.prepared;
+        self.method.render_levels(renderer, scene, levels, to)
+    }
+
+    /// Moves everything to its place at a time in seconds, unless the next frame is to show the render before it.
+    ///
+    /// # Errors
+    /// Those of the driver.
+    pub fn set_time(&mut self, settings: &Settings, seconds: f64) -> Result<(), GlError> {
+        if settings.half_rate && !self.is_again {
+            return Ok(());
+        }
+        self.prepared.set_time(seconds)
     }
 
     /// Renders the last frame `count` more times, by the method or by two real renders, and waits for the GPU. Does

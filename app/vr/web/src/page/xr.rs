@@ -4,11 +4,10 @@ use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, EyePair};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{Content as HudContent, Hud, Placement};
+use yoro_render::DepthCopy;
 use yoro_render::stereo::{DepthTarget, EyeTarget, LevelFrame, StereoMethod as _, Substituted};
-use yoro_render::{DepthCopy, PreparedScene};
 
 use super::error::sentence;
-use super::scene_show::SceneShow;
 use super::{Content, Page};
 use crate::settings::Settings;
 use crate::views::{VIEW_FLOATS, view};
@@ -76,30 +75,31 @@ impl Headset {
         let mut fits = true;
         match &mut page.content {
             Content::Scene(scene) => {
-                let SceneShow { prepared, method, .. } = &mut **scene;
                 let levels = page.settings.levels(&pair);
                 let to = [0, 1].map(|i| EyeTarget {
                     depth: Some(DepthTarget { to: images[i].depth_only(), copy }),
                     ..EyeTarget::of(&images[i])
                 });
-                let PreparedScene { renderer, scene } = prepared;
                 match levels {
                     Some(levels) => {
                         let frame = match made {
                             Some(frame) => frame,
                             none => none.insert(LevelFrame::new(&page.gl, false).map_err(sentence)?),
                         };
-                        let colors = [0, 1].map(|i| images[i].color_only());
-                        frame.render(method, (renderer, scene), &levels, &colors).map_err(sentence)?;
+                        let to = frame.fit(&levels).map_err(sentence)?;
+                        scene.render_levels(&page.settings, &(&levels).into(), &to).map_err(sentence)?;
+                        frame.compose(&[0, 1].map(|i| images[i].color_only()));
                         // Composed eyes have no depth: the browser moves them as if all were far away.
                         for image in images.iter().map(RenderTarget::depth_only) {
                             page.gl.bind_framebuffer(image.framebuffer, image.origin, image.size);
                             page.gl.clear_rectangle(image.origin, image.size, Some(DEPTH.clear_value()));
                         }
                     }
-                    None => method.render_to(renderer, scene, &pair, &to).map_err(sentence)?,
+                    None => scene
+                        .render_levels(&page.settings, &(&pair).into(), &(&to).into())
+                        .map_err(sentence)?,
                 }
-                fits = !matches!(method.report().substituted, Some(Substituted::Eyes(_)));
+                fits = !matches!(scene.method.report().substituted, Some(Substituted::Eyes(_)));
             }
             Content::Stream(stream) => {
                 stream
