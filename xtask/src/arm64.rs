@@ -78,7 +78,7 @@ impl System {
     /// Fetches and unpacks the system unless the folder is complete.
     fn make(folder: &Path) -> anyhow::Result<Self> {
         let root = folder.join("root");
-        make_once(folder, &format!("{} {}\n", PACKAGES.join(" "), QEMU.join(" ")), || {
+        make_once(folder, &format!("{} {LIBSTDCXX} {}\n", PACKAGES.join(" "), QEMU.join(" ")), || {
             let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], None)?;
             for package in download(&apt)? {
                 // qemu's packages contain a program of several megabytes for each kind of processor.
