@@ -34,7 +34,7 @@ pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
     let out = absolute(out).context("the current folder is gone: change to another")?;
     fs::create_dir_all(&out).with_context(|| format!("{} cannot be made", out.display()))?;
     let items: Vec<Item> = if only.is_empty() { Item::ALL.to_vec() } else { in_order(only) };
-    let commit = commit()?;
+    let commit = commit(&out)?;
     check_origin(&out, &commit)?;
     apt::install_missing(needs, true)?;
     let mut times = Vec::new();
@@ -91,8 +91,8 @@ fn in_order(items: &[Item]) -> Vec<Item> {
     Item::ALL.into_iter().filter(|item| items.contains(item)).collect()
 }
 
-/// Returns the commit that is built, and says if there are changes beside it.
-fn commit() -> anyhow::Result<String> {
+/// Returns the commit that is built, and says if there are changes beside it, apart from the folder of the release.
+fn commit(out: &Path) -> anyhow::Result<String> {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").current_dir(root()).args(arguments).output();
         let output = output.context("git cannot be started: apt-get install git")?;
@@ -102,7 +102,11 @@ fn commit() -> anyhow::Result<String> {
         Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
     };
     let commit = git(&["rev-parse", "HEAD"])?;
-    let is_clean = git(&["status", "--porcelain"])?.is_empty();
+    let made = out.strip_prefix(root()).map(|folder| format!(":(exclude){}", folder.display()));
+    let paths = [".".to_owned()].into_iter().chain(made).collect::<Vec<_>>();
+    let mut status = vec!["status", "--porcelain", "--"];
+    status.extend(paths.iter().map(String::as_str));
+    let is_clean = git(&status)?.is_empty();
     Ok(if is_clean { commit } else { format!("{commit}, with changes that were not committed") })
 }
 
