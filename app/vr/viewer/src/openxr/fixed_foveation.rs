@@ -65,7 +65,11 @@ impl FixedFoveation {
         }
         self.level = level;
         let set = apply(graphics, session, eyes, level);
-        self.is_refused = optional("the runtime's own foveation is not used", set)?.is_none();
+        if optional("the runtime's own foveation is not used", set)?.is_none() {
+            self.is_refused = true;
+            // One of two swapchains may have taken it, and whole eyes need full density.
+            let _ = apply(graphics, session, eyes, FoveationLevel::Off);
+        }
         Ok(())
     }
 }

@@ -232,10 +232,11 @@ impl Page {
     /// Goes to a viewpoint of the scene, or to the position from which a video was taken.
     #[wasm_bindgen(js_name = goTo)]
     pub fn go_to(&mut self, viewpoint: usize) {
-        if let Content::Scene(scene) = &self.content
+        if let Content::Scene(scene) = &mut self.content
             && let Some(viewpoint) = scene.prepared.scene.viewpoints.get(viewpoint)
         {
             self.walker = Walker::new(viewpoint.pose());
+            scene.jump();
             self.orbit(self.orbits);
             self.measure_again();
         }

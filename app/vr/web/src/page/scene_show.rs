@@ -26,8 +26,8 @@ pub struct SceneShow {
     /// The eyes of that frame.
     pair: Option<EyePair>,
     passes: Vec<PassTime>,
-    /// True if the last frame showed the render before it again.
-    is_again: bool,
+    /// True if the next frame is rendered: the last one showed the render before it again, or could not.
+    renders_next: bool,
 }
 
 /// A real render of both eyes, for comparison with the method's.
@@ -49,7 +49,7 @@ impl SceneShow {
             truth: None,
             pair: None,
             passes: Vec::new(),
-            is_again: false,
+            renders_next: true,
         })
     }
 
@@ -119,10 +119,13 @@ impl SceneShow {
         levels: &EyeLevels,
         to: &LevelTargets,
     ) -> Result<(), StereoError> {
-        let may = settings.half_rate && !self.is_again;
-        self.is_again = may && self.method.show_levels_again(levels, to, BETWEEN)?;
-        if self.is_again {
-            return Ok(());
+        if settings.half_rate && !self.renders_next {
+            self.renders_next = true;
+            if self.method.show_levels_again(levels, to, BETWEEN)? {
+                return Ok(());
+            }
+        } else {
+            self.renders_next = false;
         }
         let PreparedScene { renderer, scene } = &mut self.prepared;
         self.method.render_levels(renderer, scene, levels, to)
@@ -133,10 +136,15 @@ impl SceneShow {
     /// # Errors
     /// Those of the driver.
     pub fn set_time(&mut self, settings: &Settings, seconds: f64) -> Result<(), GlError> {
-        if settings.half_rate && !self.is_again {
+        if settings.half_rate && !self.renders_next {
             return Ok(());
         }
         self.prepared.set_time(seconds)
+    }
+
+    /// Renders the next frame: after a jump, the last one shows another place.
+    pub fn jump(&mut self) {
+        self.renders_next = true;
     }
 
     /// Renders the last frame `count` more times, by the method or by two real renders, and waits for the GPU. Does
