@@ -73,8 +73,7 @@ impl Level {
         let upside_down = unsafe { is_upside_down(layer) };
         let key = Key::new(swapchains, view, info, upside_down);
         if let Some(last) = self.last.as_ref().filter(|last| last.key == key) {
-            let vectors = last.vectors.zip(motion);
-            let motions = vectors.and_then(|(vectors, motion)| vectors.infos(swapchains, &motion));
+            let motions = last.motions(swapchains, motion);
             let eyes = Eyes { motions, ..last.again(view, info) };
             return Ok(Synthesis { eyes, time: None, no_vectors: None });
         }
@@ -131,7 +130,7 @@ impl Level {
             Err(reason) => (None, Some(reason)),
         };
         let synthesized = Synthesized { key, split, crop, dominant, color, depth, vectors };
-        let motions = vectors.zip(motion).and_then(|(vectors, motion)| vectors.infos(swapchains, &motion));
+        let motions = synthesized.motions(swapchains, motion);
         let eyes = Eyes { motions, ..synthesized.eyes(view, info) };
         self.last = Some(synthesized);
         Ok(Synthesis { eyes, time, no_vectors })

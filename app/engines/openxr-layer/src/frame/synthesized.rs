@@ -10,6 +10,7 @@ use super::rewrite::Eyes;
 use super::target::Acquired;
 use super::vectors::EyeVectors;
 use crate::geometry::{Rectangle, Split, pose, xr_fov, xr_pose};
+use crate::motion::MotionInfo;
 use crate::swapchain::Swapchain;
 
 /// Two images that the application submits. While it shows them again, they stay equal.
@@ -75,6 +76,16 @@ pub struct Synthesized {
 }
 
 impl Synthesized {
+    /// Returns the motion vectors of both eyes for the application's, if they were made of the same images.
+    pub fn motions(
+        &self,
+        swapchains: &[Arc<Swapchain>],
+        info: Option<MotionInfo>,
+    ) -> Option<[MotionInfo; 2]> {
+        let (vectors, info) = self.vectors.zip(info)?;
+        vectors.infos(swapchains, &info)
+    }
+
     /// Returns the views for the pose of this view, whose key is the same.
     pub fn again(
         &self,
