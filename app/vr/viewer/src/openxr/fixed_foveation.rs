@@ -46,7 +46,7 @@ pub(super) struct FixedFoveation {
 }
 
 impl FixedFoveation {
-    /// Returns images of full density; `None` if the runtime has no foveation.
+    /// Returns the density of new images, which is full; `None` if the runtime has no foveation.
     pub fn new(session: &xr::Session<xr::OpenGlEs>) -> Option<FixedFoveation> {
         session.instance().exts().fb_foveation.as_ref()?;
         Some(FixedFoveation { level: FoveationLevel::Off, is_refused: false })

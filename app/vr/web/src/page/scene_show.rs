@@ -119,13 +119,9 @@ impl SceneShow {
         levels: &EyeLevels,
         to: &LevelTargets,
     ) -> Result<(), StereoError> {
-        if settings.half_rate && !self.renders_next {
-            self.renders_next = true;
-            if self.method.show_levels_again(levels, to, BETWEEN)? {
-                return Ok(());
-            }
-        } else {
-            self.renders_next = false;
+        self.renders_next = self.repeats_next(settings);
+        if self.renders_next && self.method.show_levels_again(levels, to, BETWEEN)? {
+            return Ok(());
         }
         let PreparedScene { renderer, scene } = &mut self.prepared;
         self.method.render_levels(renderer, scene, levels, to)
@@ -136,13 +132,15 @@ impl SceneShow {
     /// # Errors
     /// Those of the driver.
     pub fn set_time(&mut self, settings: &Settings, seconds: f64) -> Result<(), GlError> {
-        if settings.half_rate && !self.renders_next {
-            return Ok(());
-        }
-        self.prepared.set_time(seconds)
+        if self.repeats_next(settings) { Ok(()) } else { self.prepared.set_time(seconds) }
     }
 
-    /// Renders the next frame: after a jump, the last one shows another place.
+    /// True if the next frame is to show the render before it.
+    fn repeats_next(&self, settings: &Settings) -> bool {
+        settings.half_rate && !self.renders_next
+    }
+
+    /// Makes the next frame a render: after a jump, the last one shows another place.
     pub fn jump(&mut self) {
         self.renders_next = true;
     }

@@ -56,8 +56,8 @@ fn means(suite: &Suite, label: &str) -> Table {
         "periphery",
         "periphery, alike",
         "near silhouettes, alike",
-        "flicker, periphery, rendered eye",
-        "synthesized eye",
+        "flicker of the periphery, rendered eye",
+        "flicker of the periphery, synthesized eye",
     ];
     let mut table =
         Table::new(format!("Means over the scenes at {label}: times, PSNR in dB / SSIM"), &columns);
