@@ -33,6 +33,11 @@ pub fn check(archive: &Path, packages: &[&str]) -> anyhow::Result<()> {
     command.args(if is_tar { &["--extract", "--to-stdout", "--wildcards", "--file"][..] } else { &["-p"] });
     let output = command.arg(archive).arg(pattern).output();
     let output = output.context("tar or unzip cannot be started: apt-get install tar unzip")?;
+    if !output.status.success() {
+        let told = String::from_utf8_lossy(&output.stderr);
+        let told = told.lines().next().unwrap_or_default();
+        bail!("{FILE} of {} cannot be read: {told}", archive.display());
+    }
     let text = String::from_utf8_lossy(&output.stdout);
     let has = |name: &str| text.lines().any(|line| line.trim_start().starts_with(&format!("{name} ")));
     if let Some(missing) = packages.iter().find(|name| !has(name)) {
@@ -66,5 +71,8 @@ mod tests {
         };
         assert_eq!(of("Notices\n\n  glow 0.18.0\n\nash 0.38 (MIT)\n"), Ok(()));
         assert!(of("Notices\n\n  glow 0.18.0\n").unwrap_err().contains("lacks the notice of ash"));
+        let cut = folder.path().join("cut.zip");
+        write(&cut, "PK").unwrap();
+        assert!(check(&cut, &["glow"]).unwrap_err().to_string().contains("cut.zip cannot be read"));
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use xtask::ndk::sdk;
 
 use super::report::Report;
@@ -31,7 +31,7 @@ pub fn check(apk: &Path, any_key: bool, report: &mut Report) -> anyhow::Result<(
 /// Adds a row for the signature of a bundle, which is that of a JAR. `any_key` accepts one for debugging.
 ///
 /// # Errors
-/// Fails if keytool cannot be started.
+/// Fails if keytool cannot be started or cannot read the bundle.
 pub fn check_jar(bundle: &Path, any_key: bool, report: &mut Report) -> anyhow::Result<()> {
     let mut keytool = Command::new("keytool");
     keytool.args(["-J-Duser.language=en", "-printcert", "-jarfile"]).arg(bundle);
@@ -39,6 +39,11 @@ pub fn check_jar(bundle: &Path, any_key: bool, report: &mut Report) -> anyhow::R
         .output()
         .context("keytool cannot be started: install a Java runtime (default-jre-headless)")?;
     let text = String::from_utf8_lossy(&output.stdout);
+    if !output.status.success() {
+        // It writes its errors to standard output.
+        let told = text.lines().next().unwrap_or_default();
+        bail!("the signature of {} cannot be read: {told}", bundle.display());
+    }
     match text.lines().find_map(|line| line.strip_prefix("Owner: ")) {
         Some(signer) => {
             report.row("signature", format!("of the jar, by {signer}"), refusal(signer, any_key));

@@ -36,7 +36,7 @@ pub const DEPTH: usize = 1;
 pub struct Level {
     /// Colour of the other eye, and its depth if the runtime accepts depth.
     eye: Output<Warp>,
-    vectors: Vectors,
+    pub vectors: Vectors,
     /// Depth formats for which no target can be created.
     without_depth: Vec<i64>,
     /// The last synthesized view, while the targets still show it.
@@ -69,16 +69,18 @@ impl Level {
     ) -> Result<Synthesis, Reason> {
         // SAFETY: a submitted view.
         let (info, motion) = unsafe { (depth_of(view).ok_or(Reason::NoDepth)?, MotionInfo::of(view)) };
+        let motion = motion.filter(|_| !self.vectors.are_refused);
         // SAFETY: a submitted layer.
         let upside_down = unsafe { is_upside_down(layer) };
         let key = Key::new(swapchains, view, info, upside_down);
         if let Some(last) = self.last.as_ref().filter(|last| last.key == key) {
             let motions = last.motions(swapchains, motion);
+            // Of an image that was not released again, no vectors can be made.
+            let no_vectors = (motion.is_some() && motions.is_none()).then_some(Reason::Old("colour"));
             let eyes = Eyes { motions, ..last.again(view, info) };
-            return Ok(Synthesis { eyes, time: None, no_vectors: None });
+            return Ok(Synthesis { eyes, time: None, no_vectors });
         }
         self.last = None;
-        let former = self.vectors.former.take();
         let binding = session.binding.ok_or(Reason::NoGraphics)?;
         let offer = session.last_offer(part).ok_or(Reason::NoViews)?.map_err(Reason::Views)?;
         let source = source(swapchains, view, info, upside_down)?;
@@ -120,7 +122,7 @@ impl Level {
         let dominant = offer.eyes.dominant;
         let vectors = motion.map(|motion| {
             // SAFETY: a structure in the submitted view's chain.
-            unsafe { self.vectors.make(session, binding, swapchains, &motion, former, (&source, &split)) }
+            unsafe { self.vectors.make(session, binding, swapchains, &motion, (&source, &split)) }
         });
         let (vectors, no_vectors) = match vectors.transpose() {
             Ok(made) => {

@@ -38,11 +38,16 @@ use statistics::{Report, Statistics};
 /// What the log says if motion vectors do not go on to the runtime.
 const NO_VECTORS: &str = "shown without its motion vectors";
 
+/// The number of frames in a row after which a runtime that refuses motion vectors gets no more.
+const MOST_REFUSALS: u32 = 3;
+
 /// The state that xrEndFrame keeps between frames.
 #[derive(Default)]
 pub struct Frames {
     /// One for each rendered view, in the order of the views.
     levels: [Level; 2],
+    /// The number of frames since the runtime last accepted motion vectors, of those whose vectors it refused.
+    refusals: u32,
     /// The kinds of reasons that have been logged, with what they were reasons for.
     told: HashSet<(&'static str, Discriminant<Reason>)>,
     statistics: Statistics,
@@ -124,9 +129,16 @@ pub unsafe fn end_frame(
         }
     };
     let mut result = end(&mut rewritten);
-    if is_about_layers(result) && rewritten.drop_motions() {
-        lock(frames).tell(session, NO_VECTORS, Reason::Runtime("xrEndFrame", result));
-        result = end(&mut rewritten);
+    if rewritten.has_motions() {
+        let reason = Reason::Runtime("xrEndFrame", result);
+        let mut refused = is_about_layers(result);
+        if refused {
+            rewritten.drop_motions();
+            result = end(&mut rewritten);
+            // If it still refuses, vectors were not the reason.
+            refused = !is_about_layers(result);
+        }
+        lock(frames).showed_vectors(session, refused.then_some(reason));
     }
     if synthesized && is_about_layers(result) {
         lock(frames).refused(session, Reason::Runtime("xrEndFrame", result));
@@ -309,6 +321,17 @@ impl Frames {
     fn tell(&mut self, session: &Session, what: &'static str, reason: Reason) {
         if self.told.insert((what, std::mem::discriminant(&reason))) {
             say(format_args!("{}: {what}: {reason}", session.instance.application));
+        }
+    }
+
+    /// Counts the frames in a row whose motion vectors the runtime refused, for a reason.
+    fn showed_vectors(&mut self, session: &Session, refused: Option<Reason>) {
+        self.refusals = if refused.is_some() { self.refusals + 1 } else { 0 };
+        if self.refusals == MOST_REFUSALS {
+            self.levels.iter_mut().for_each(|level| level.vectors.are_refused = true);
+        }
+        if let Some(reason) = refused {
+            self.tell(session, NO_VECTORS, reason);
         }
     }
 

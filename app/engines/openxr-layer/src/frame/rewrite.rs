@@ -47,11 +47,14 @@ impl Rewritten {
             .push(sys::CompositionLayerProjection { view_count: 2 * eyes.len() as u32, ..*layer });
     }
 
-    /// Takes all motion vectors out again. Returns true if there were some.
-    pub fn drop_motions(&mut self) -> bool {
-        let any = self.motions.iter().any(|motions| !motions.is_empty());
+    /// True if there are motion vectors.
+    pub fn has_motions(&self) -> bool {
+        self.motions.iter().any(|motions| !motions.is_empty())
+    }
+
+    /// Takes all motion vectors out again.
+    pub fn drop_motions(&mut self) {
         self.motions.iter_mut().for_each(|motions| motions.clear());
-        any
     }
 
     /// Returns the application's layers, in which the rewritten layers replace those with this number of views.

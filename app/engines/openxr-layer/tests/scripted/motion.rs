@@ -130,7 +130,7 @@ impl Vectors {
 const FRAMES: u32 = 6;
 
 /// Runs an application of this many views that submits motion vectors, after a frame without. `change` changes what it submits
-/// in a frame, counted from 0. The last one is submitted once more if `again` is true.
+/// in a frame, counted from 0. The last one is submitted once more if `again` is true, as what `change` makes of it.
 fn run(
     drawing: Drawing,
     script: Script,
@@ -179,6 +179,8 @@ fn run(
                 let motion = Some(vectors[i].render(&client, by, *view, former[i]).unwrap());
                 submitted.push(change(with, Submitted { motion, ..one }));
             }
+            let again = (again && with + 1 == FRAMES)
+                .then(|| submitted.iter().map(|one| change(FRAMES, *one)).collect::<Vec<_>>());
             let layers = [Layer::Projection(submitted)];
             let before = allocations();
             client.end_frame(frame, &layers).unwrap();
@@ -187,9 +189,9 @@ fn run(
             assert!(with < 4 || made == 0, "the layer allocates {made} times in a frame");
             with += u32::from(former.is_some());
             former = Some(located);
-            if again && with == FRAMES {
+            if let Some(again) = again {
                 let frame = client.begin_frame().unwrap();
-                client.end_frame(frame, &layers).unwrap();
+                client.end_frame(frame, &[Layer::Projection(again)]).unwrap();
             }
         }
         client.destroy_session().unwrap();
@@ -346,15 +348,18 @@ fn a_runtime_that_refuses_vectors_gets_none() {
     let failure = sys::Result::ERROR_RUNTIME_FAILURE;
     // Two frames are empty, and the third has no vectors. The application makes four swapchains, the layer two for the other
     // eye, and then two for each eye's vectors.
-    let cases = [
-        ("xrEndFrame", 5, sys::Result::ERROR_VALIDATION_FAILURE, [0, 2, 0, 2, 2, 2, 2]),
-        ("xrEndFrame", 4, sys::Result::ERROR_LAYER_INVALID, [0, 0, 2, 2, 2, 2, 2]),
-        ("xrCreateSwapchain", 7, failure, [0, 0, 2, 2, 2, 2, 2]),
-        ("xrCreateSwapchain", 10, failure, [0, 0, 2, 2, 2, 2, 2]),
+    let refused = sys::Result::ERROR_LAYER_INVALID;
+    let cases: [(_, &[u32], _, _); 5] = [
+        ("xrEndFrame", &[5], sys::Result::ERROR_VALIDATION_FAILURE, [0, 2, 0, 2, 2, 2, 2]),
+        ("xrEndFrame", &[4], refused, [0, 0, 2, 2, 2, 2, 2]),
+        // Each refused frame is ended twice. A runtime that refuses three in a row is not asked again.
+        ("xrEndFrame", &[4, 6, 8], refused, [0; 7]),
+        ("xrCreateSwapchain", &[7], failure, [0, 0, 2, 2, 2, 2, 2]),
+        ("xrCreateSwapchain", &[10], failure, [0, 0, 2, 2, 2, 2, 2]),
     ];
     with_gles(|gles| {
-        for (call, nth, result, expected) in cases {
-            let faults = faulty(call, nth, result).faults;
+        for (call, calls, result, expected) in cases {
+            let faults = calls.iter().flat_map(|nth| faulty(call, *nth, result).faults).collect();
             let script = Script { faults, pictures: None, ..moving(gles.into()) };
             let seen = run(gles.into(), script, (By::SpaceWarp, 1, false), |_, submitted| submitted);
             assert_counts(&seen, &[[u64::from(FRAMES) + 1, 0]], call);
@@ -364,8 +369,14 @@ fn a_runtime_that_refuses_vectors_gets_none() {
             let with = frames
                 .iter()
                 .map(|layers| views_of(layers).iter().filter(|view| view.synthesis.is_some()).count());
-            assert_eq!(with.collect::<Vec<_>>(), expected, "{call}, {nth}: {}", seen.said);
+            assert_eq!(with.collect::<Vec<_>>(), expected, "{call}, {calls:?}: {}", seen.said);
         }
+        // Without its vectors, the frame is refused as well.
+        let faults = [4, 5].into_iter().flat_map(|nth| faulty("xrEndFrame", nth, refused).faults).collect();
+        let script = Script { faults, pictures: None, ..moving(gles.into()) };
+        let seen = run(gles.into(), script, (By::SpaceWarp, 1, false), |_, submitted| submitted);
+        assert_counts(&seen, &[[u64::from(FRAMES), 1]], "refused for another reason");
+        assert_eq!(seen.said("motion vectors"), 0, "{}", seen.said);
     });
 }
 
@@ -381,5 +392,20 @@ fn an_image_that_is_shown_again_has_its_vectors() {
         let vectors = |layers| views_of(layers).iter().map(|view| view.synthesis.clone()).collect::<Vec<_>>();
         assert!(vectors(again).iter().all(Option::is_some), "{}", seen.said);
         assert_eq!(vectors(last), vectors(again));
+
+        // Other vectors than those of which both eyes' were made.
+        let script = Script { pictures: None, ..moving(gles.into()) };
+        let seen = run(gles.into(), script, (By::FrameSynthesis, 1, true), |frame, submitted| {
+            synthesis(submitted, |info| {
+                for image in [&mut info.motion_vector_sub_image, &mut info.depth_sub_image] {
+                    image.image_rect.extent.height -= i32::from(frame == FRAMES);
+                }
+            })
+        });
+        assert_counts(&seen, &[[u64::from(FRAMES) + 2, 0]], "with other vectors");
+        let with =
+            seen.frames().iter().map(|layers| views_of(layers)[0].synthesis.is_some()).collect::<Vec<_>>();
+        assert_eq!(with, [false, true, true, true, true, true, true, false]);
+        assert_eq!(seen.said("without its motion vectors: colour was not released"), 1, "{}", seen.said);
     });
 }
