@@ -81,3 +81,49 @@ fn every_link_and_path_leads_somewhere() {
     }
     assert!(lost.is_empty(), "these do not exist:\n{}", lost.join("\n"));
 }
+
+/// Returns the cells of the table with a scene in each row that follows a line of a document.
+fn cells(text: &str, before: &str) -> Vec<Vec<String>> {
+    let (_, table) = text.split_once(before).unwrap();
+    let rows = table.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
+    let cell = |cell: &str| cell.trim().trim_matches('*').trim_matches('`').to_owned();
+    rows.map(|row| row.split('|').map(cell).collect()).collect()
+}
+
+/// The picture's marks have the figures of the tables, and are where these figures lie.
+#[test]
+fn the_picture_of_scenes_shows_the_tables() {
+    let read = |file: &str| fs::read_to_string(root().join("docs").join(file)).unwrap();
+    let (text, picture) = (read("results.md"), read("pictures/scenes.svg"));
+    let times = cells(&text, "Frame time over two renders");
+    let qualities = cells(&text, "PSNR / SSIM on the same GPU");
+    let of = |table: &[Vec<String>], scene: &str, method: &str| {
+        let name = if method == "same image" { "mono" } else { method };
+        let column = table[0].iter().position(|cell| cell == name).unwrap();
+        table.iter().find(|row| row[1] == scene).unwrap()[column].clone()
+    };
+    let attribute = |mark: &str, name: &str| -> f32 {
+        let (_, value) = mark.split_once(&format!(" {name}=\"")).unwrap();
+        value.split_once('"').unwrap().0.parse().unwrap()
+    };
+    let (mut marks, mut placed) = (0, 0);
+    for line in picture.lines().filter(|line| line.contains(": ")) {
+        let Some((mark, title)) = line.split_once("<title>") else { continue };
+        let (name, told) = title.split_once("</title>").unwrap().0.split_once(": ").unwrap();
+        let (method, scene) = name.split_once(", ").unwrap();
+        let time = of(&times, scene, method);
+        let quality = of(&qualities, scene, method);
+        let (psnr, ssim) = quality.split_once('/').unwrap();
+        let both = format!("{time}, {psnr} dB, SSIM {}", ssim.trim_start_matches('0'));
+        assert!(told == time || told == both, "{name}: {told}, but the tables have {both}");
+        marks += 1;
+        if told == both && mark.contains("<circle") {
+            let [x, y] = [time, psnr.to_owned()].map(|value| value.parse::<f32>().unwrap());
+            // The scales: 659 pixels from .5 to 1.5, and 54 for 10 dB.
+            let [dx, dy] = [attribute(mark, "cx") - 659.0 * (x - 0.5), attribute(mark, "cy") + 5.4 * (y - 10.0)];
+            assert!((dx - 96.9).abs() < 0.2 && (dy - 336.0).abs() < 0.2, "{name} is elsewhere: {dx}, {dy}");
+            placed += 1;
+        }
+    }
+    assert_eq!((marks, placed), (63, 16), "marks and circles");
+}
