@@ -85,7 +85,8 @@ fn every_link_and_path_leads_somewhere() {
 /// Returns the cells of the table with a scene in each row that follows a line of a document.
 fn cells(text: &str, before: &str) -> Vec<Vec<String>> {
     let (_, table) = text.split_once(before).unwrap();
-    let rows = table.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
+    let rows =
+        table.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
     let cell = |cell: &str| cell.trim().trim_matches('*').trim_matches('`').to_owned();
     rows.map(|row| row.split('|').map(cell).collect()).collect()
 }
@@ -120,7 +121,8 @@ fn the_picture_of_scenes_shows_the_tables() {
         if told == both && mark.contains("<circle") {
             let [x, y] = [time, psnr.to_owned()].map(|value| value.parse::<f32>().unwrap());
             // The scales: 659 pixels from .5 to 1.5, and 54 for 10 dB.
-            let [dx, dy] = [attribute(mark, "cx") - 659.0 * (x - 0.5), attribute(mark, "cy") + 5.4 * (y - 10.0)];
+            let [dx, dy] =
+                [attribute(mark, "cx") - 659.0 * (x - 0.5), attribute(mark, "cy") + 5.4 * (y - 10.0)];
             assert!((dx - 96.9).abs() < 0.2 && (dy - 336.0).abs() < 0.2, "{name} is elsewhere: {dx}, {dy}");
             placed += 1;
         }

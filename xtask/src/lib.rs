@@ -174,6 +174,7 @@ pub fn main() -> ExitCode {
 fn perform(task: Task) -> anyhow::Result<bool> {
     match task {
         Task::Setup => {
+            apt::install_missing(|| vec![setup::cpp()], true)?;
             if setup::ensure()?.complete() & setup::vulkan() {
                 println!("everything is there");
             }

@@ -78,6 +78,11 @@ impl Libraries {
     }
 }
 
+/// Returns the compiler of C++, in which the encoder of H.264 is written.
+pub fn cpp() -> apt::Need {
+    apt::Need::program("c++", &["g++"])
+}
+
 /// Installs what is missing. Prints nothing if nothing is missing.
 ///
 /// # Errors

@@ -15,7 +15,7 @@ use anyhow::{Context as _, bail};
 use crate::apt::{self, Need};
 use crate::folders::{copy, copy_folder, remove, root, write};
 use crate::rust::{self, Rust};
-use crate::{notices, site, web};
+use crate::{notices, setup, site, web};
 
 use items::Description;
 pub use items::Item;
@@ -80,6 +80,7 @@ fn needs() -> Vec<Need> {
         Need::program("xz", &["xz-utils"]),
         Need::program("strip", &["binutils"]),
         Need::program("unzip", &["unzip"]),
+        setup::cpp(),
         // Without it, the program's encoder of H.264 has no code for this processor.
         Need::program("nasm", &["nasm"]),
         rust::source(rust.as_ref()),

@@ -22,6 +22,7 @@ use anyhow::bail;
 
 use crate::cargo::cargo;
 use crate::folders::target_folder;
+use crate::{apt, setup};
 
 use binaries::Program;
 use equipment::{Equipment, Preparation};
@@ -95,6 +96,7 @@ struct Plan {
 /// Fails if a test fails twice, does not compile, or none is selected.
 pub fn test(options: &Options) -> anyhow::Result<()> {
     let mut summary = Summary::begin();
+    apt::install_missing(|| vec![setup::cpp()], true)?;
     let equipment = thread::scope(|scope| {
         let preparation = options.all().then(|| Preparation::begin(scope, None)).transpose()?;
         let binaries = summary.measure("compiling the tests", || binaries::compile(&options.packages))?;
