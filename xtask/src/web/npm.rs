@@ -31,7 +31,8 @@ pub fn three() -> anyhow::Result<PathBuf> {
             copy(&source.join(name), &folder.join(name))?;
         }
         let mut npm = npm();
-        npm.args(["ci", "--silent", "--ignore-scripts", "--no-audit", "--no-fund"]).current_dir(&folder);
+        npm.args(["ci", "--loglevel=error", "--ignore-scripts", "--no-audit", "--no-fund"])
+            .current_dir(&folder);
         let output = npm.output().context(NO_NPM)?;
         if !output.status.success() {
             bail!("npm cannot fetch three.js: {}", String::from_utf8_lossy(&output.stderr).trim());
@@ -79,7 +80,7 @@ fn fetch(name: &str, package: &str, script: &str) -> anyhow::Result<PathBuf> {
     make_once(&folder, package, || {
         fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
         let mut npm = npm();
-        npm.args(["pack", "--silent", package]).current_dir(&folder);
+        npm.args(["pack", "--loglevel=error", package]).current_dir(&folder);
         let output = npm.output().context(NO_NPM)?;
         if !output.status.success() {
             bail!("npm cannot fetch {package}: {}", String::from_utf8_lossy(&output.stderr).trim());
@@ -92,4 +93,17 @@ fn fetch(name: &str, package: &str, script: &str) -> anyhow::Result<PathBuf> {
         Ok(())
     })?;
     Ok(script)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// npm 9, Debian 12's, takes no lock that names a repository where `overrides` names a version.
+    #[test]
+    fn the_lock_names_versions_alone() {
+        let lock = fs::read_to_string(root().join("tests/three/package-lock.json")).unwrap();
+        let repositories: Vec<_> = lock.lines().filter(|line| line.contains('#')).collect();
+        assert!(repositories.is_empty(), "write the version there: {repositories:?}");
+    }
 }
