@@ -10,7 +10,7 @@ use crate::Arguments;
 use crate::folders::root;
 
 /// Programs beside cargo that the host or its image has.
-const PROGRAMS: [&str; 6] = ["rustup", "apt-get", "git", "gh", "echo", "printenv"];
+const PROGRAMS: [&str; 5] = ["rustup", "apt-get", "git", "gh", "test"];
 
 /// Returns the commands of all jobs; those that a matrix names, too.
 fn commands(file: &Path) -> Vec<String> {
