@@ -120,6 +120,9 @@ impl Level {
         }
         let mut time = result?;
         let dominant = offer.eyes.dominant;
+        if motion.is_none() {
+            self.vectors.former = None;
+        }
         let vectors = motion.map(|motion| {
             // SAFETY: a structure in the submitted view's chain.
             unsafe { self.vectors.make(session, binding, swapchains, &motion, (&source, &split)) }

@@ -25,8 +25,8 @@ use crate::synthesizer::Job;
 pub struct Vectors {
     /// The dominant eye's, if it needs its own, and the other eye's.
     pub outputs: [Output<MotionWarp>; 2],
-    /// The place in the last frame of which vectors were made.
-    former: Option<Place>,
+    /// The place in the last synthesized frame, if it had vectors.
+    pub former: Option<Place>,
     /// True if the runtime gets no more.
     pub are_refused: bool,
 }
@@ -61,11 +61,11 @@ impl Vectors {
         info: &MotionInfo,
         (source, split): (&Source, &Split),
     ) -> Result<(EyeVectors, Option<Duration>), Reason> {
+        let former = self.former.take();
         let whats = ["the image of motion vectors", "the depth of motion vectors"];
         let (contents, images, part) = submitted_images(swapchains, info.images(), whats)?;
         info.check(contents[COLOR].format)?;
         let from_top = binding.rows_from_top();
-        let former = self.former.take();
         let motion = MotionSplit::new(info, split, source.part.size, part.size, !from_top, former)?;
         self.former = Some(motion.place);
         let crop = part.part(motion.crop, from_top);
