@@ -93,6 +93,11 @@ impl Viewer {
         Ok(())
     }
 
+    /// Says that the display refreshes at another rate from now on.
+    pub fn set_display_rate(&mut self, hz: f32) {
+        self.display_hz = hz;
+    }
+
     /// True if the targets of the last frame that asked for motion vectors got them.
     pub fn has_motion(&self) -> bool {
         self.scene_state() == SceneState::Ready && self.method.has_motion()

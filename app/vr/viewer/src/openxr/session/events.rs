@@ -55,7 +55,9 @@ impl Session {
                     }
                 }
                 Some(xr::Event::DisplayRefreshRateChangedFB(change)) => {
-                    log::info!("refresh rate: {} Hz", change.to_display_refresh_rate());
+                    let hz = change.to_display_refresh_rate();
+                    log::info!("refresh rate: {hz} Hz");
+                    viewer.set_display_rate(hz);
                 }
                 Some(xr::Event::PerfSettingsEXT(change)) => {
                     log::info!(
