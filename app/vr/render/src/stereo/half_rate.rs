@@ -20,6 +20,18 @@ const METRES_PER_SECOND: f32 = 1.0;
 const SECONDS: f32 = 1.0 / 36.0;
 /// Distance in metres of the nearest surfaces for which a guard band without a distance is sized.
 const NEAREST: f32 = 1.0;
+/// Distance in metres from which on the guard band is wide enough for the head's motion, whatever its own distance is:
+/// nearer surfaces move so far that it would cost more than a render.
+const NEAREST_MOVED: f32 = 0.5;
+
+/// Radians and metres that no head moves between two renders. Further is a jump: a turn by a button, another viewpoint.
+const JUMP: (f32, f32) = (0.35, 0.25);
+
+/// True if an eye has jumped from one place to another.
+fn has_jumped(from: &View, to: &View) -> bool {
+    let (from, to) = (&from.pose, &to.pose);
+    from.orientation.angle_between(to.orientation) > JUMP.0 || from.position.distance(to.position) > JUMP.1
+}
 
 /// Renders with a guard band on all four sides, of one eye or of each, shown in any number of frames: each eye is
 /// synthesized from colour, depth and motion vectors at the newest poses. Transparent surfaces and highlights move with
@@ -35,16 +47,17 @@ pub struct HalfRate {
     /// True if the depth of the renders is that of two samples. Where a texture holds one, as after extrapolation, the other
     /// reads as 0, the farthest.
     pairs: bool,
-    /// Made if anything moves.
-    moving: Option<Moving>,
     /// Synthesis without and with depth; the latter is made with the first frame that wants it.
     synthesis: [Option<Synthesizer>; 2],
 }
 
-/// What surfaces that move need.
+/// What surfaces that move need. Each render has its own: its view may have another size.
 struct Moving {
-    vectors: VectorPass,
+    pass: VectorPass,
+    vectors: RenderTarget,
     extrapolator: Extrapolator,
+    /// The view before, if there are vectors since; `None` if nothing in the view moves, or there was none before.
+    former: Option<View>,
 }
 
 /// The images of a rendered view.
@@ -53,9 +66,7 @@ struct Render {
     /// The view in the targets; `None` before the first frame.
     view: Option<View>,
     /// Made if anything moves.
-    vectors: Option<RenderTarget>,
-    /// The view before, if there are vectors since; `None` if nothing in the view moves, or there was none before.
-    former: Option<View>,
+    moving: Option<Moving>,
 }
 
 /// The synthesis, and the image of an eye whose depth is wanted.
@@ -76,22 +87,33 @@ impl Synthesizer {
     }
 }
 
-impl Render {
-    /// Writes the vectors of what is in the targets, if anything in it moves. `former` is the view rendered before.
+impl Moving {
+    fn new(gl: &Rc<Context>, pairs: bool) -> Result<Moving, GlError> {
+        let options = Options { depth_pairs: pairs, ..Options::default() };
+        let formats = [(Format::Rgba16F, Filter::Nearest)];
+        Ok(Moving {
+            pass: VectorPass::new(gl, pairs)?,
+            vectors: RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth24))?,
+            extrapolator: Extrapolator::new(gl, &options)?,
+            former: None,
+        })
+    }
+
+    /// Writes the vectors of a view in targets, if anything in it moves. `former` is the view rendered before.
     fn write_vectors(
         &mut self,
-        pass: &mut VectorPass,
+        targets: &Targets,
         scene: &GpuScene,
         view: &View,
         former: Option<View>,
     ) -> Result<(), GlError> {
-        self.former = former.filter(|_| scene.is_moving_in(view));
-        let Some((target, then)) = self.vectors.as_mut().zip(self.former) else { return Ok(()) };
-        target.resize(view.size)?;
+        self.former = former.filter(|former| scene.is_moving_in(view) && !has_jumped(former, view));
+        let Some(then) = self.former else { return Ok(()) };
+        self.vectors.resize(view.size)?;
         let step = Step { view: *view, now: *view, then, ndc: Ndc::ZeroToOne };
-        pass.draw_moving(scene, &step)?;
-        let depth = self.targets.depth(view.size, Eye::Left, [0, 0]);
-        pass.write((&depth, view), &step, [0, 0], &Destination::whole(target))
+        self.pass.draw_moving(scene, &step)?;
+        let depth = targets.depth(view.size, Eye::Left, [0, 0]);
+        self.pass.write((&depth, view), &step, [0, 0], &Destination::whole(&self.vectors))
     }
 }
 
@@ -114,7 +136,6 @@ impl HalfRate {
             each,
             renders: Vec::new(),
             pairs: false,
-            moving: None,
             synthesis: Default::default(),
         })
     }
@@ -129,24 +150,28 @@ impl HalfRate {
             true => frame.pair.view(Eye::BOTH[render]),
             false => frame.synthesis_views(self.guard_band)?.source,
         };
-        Ok(self.motion.guarded(&seen, nearest)?.view)
+        match self.motion.guarded(&seen, nearest.max(NEAREST_MOVED)) {
+            // The guard band alone is as wide as a view can be.
+            Err(EyesError::Apart) => Ok(seen),
+            guarded => Ok(guarded?.view),
+        }
     }
 
     /// Synthesizes both eyes from the renders, after a part of the step between the last two of them.
     fn show(&mut self, pair: &EyePair, to: &[EyeTarget; 2], ahead: f32) -> Result<(), StereoError> {
         let eyes = reversed(pair);
-        let HalfRate { gl, each, renders, pairs, moving, synthesis, .. } = self;
-        for (i, render) in renders.iter().enumerate() {
+        let HalfRate { gl, each, renders, pairs, synthesis, .. } = self;
+        for (i, render) in renders.iter_mut().enumerate() {
             let Some(source) = &render.view else { return Ok(()) };
             let targets = &render.targets;
             let color = targets.developed.as_ref().unwrap_or(targets.color());
             let depth = targets.depth(source.size, Eye::Left, [0, 0]);
             let mut images = Source::new(color.color(0).raw(), depth.texture.raw());
-            let vectors = render.vectors.as_ref().zip(render.former.as_ref()).filter(|_| ahead > 0.0);
-            if let Some(((vectors, former), moving)) = vectors.zip(moving.as_mut()) {
+            if let Some(Moving { vectors, extrapolator, former: Some(former), .. }) = &mut render.moving
+                && ahead > 0.0
+            {
                 let step = Extrapolation::new(source, former, Ndc::ZeroToOne, f64::from(ahead))?;
-                let vectors = (vectors.color(0).raw(), source.size);
-                images = moving.extrapolator.extrapolate(images, vectors, &step)?;
+                images = extrapolator.extrapolate(images, (vectors.color(0).raw(), source.size), &step)?;
             }
             for eye in Eye::BOTH.into_iter().filter(|eye| !*each || eye.index() == i) {
                 let to = &to[eye.index()];
@@ -178,24 +203,15 @@ impl StereoMethod for HalfRate {
         if self.renders.is_empty() {
             for _ in 0..1 + usize::from(self.each) {
                 let targets = renderer.targets(Layout::Single)?;
-                self.renders.push(Render { targets, view: None, vectors: None, former: None });
+                self.renders.push(Render { targets, view: None, moving: None });
             }
             self.pairs = renderer.nearest_depth() == NearestDepth::Carried;
             self.synthesis[0] = Some(Synthesizer::new(&self.gl, self.pairs, false)?);
         }
         // Vectors are floats; where a driver cannot draw any, what moves stays where it was rendered.
         let can_move = scene.moves() && self.gl.capabilities().float_render_targets;
-        if can_move && self.moving.is_none() {
-            let options = Options { depth_pairs: self.pairs, ..Options::default() };
-            self.moving = Some(Moving {
-                vectors: VectorPass::new(&self.gl, self.pairs)?,
-                extrapolator: Extrapolator::new(&self.gl, &options)?,
-            });
-            for render in &mut self.renders {
-                let formats = [(Format::Rgba16F, Filter::Nearest)];
-                let target = RenderTarget::new(&self.gl, [1, 1], &formats, Some(Format::Depth24))?;
-                render.vectors = Some(target);
-            }
+        for render in self.renders.iter_mut().filter(|render| can_move && render.moving.is_none()) {
+            render.moving = Some(Moving::new(&self.gl, self.pairs)?);
         }
         Ok(())
     }
@@ -220,8 +236,8 @@ impl StereoMethod for HalfRate {
                 let to = Destination::whole(targets.picture(view.size)?);
                 renderer.develop(targets, view, Eye::Left, [0, 0], &to, None);
             }
-            if let Some(moving) = &mut self.moving {
-                render.write_vectors(&mut moving.vectors, scene, view, former)?;
+            if let Some(moving) = &mut render.moving {
+                moving.write_vectors(&render.targets, scene, view, former)?;
             }
             render.view = Some(*view);
         }
@@ -229,7 +245,9 @@ impl StereoMethod for HalfRate {
     }
 
     fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2], ahead: f32) -> Result<bool, StereoError> {
-        if self.renders.is_empty() || self.renders.iter().any(|render| render.view.is_none()) {
+        let eye = pair.view(pair.dominant);
+        let is_near = |render: &Render| render.view.as_ref().is_some_and(|view| !has_jumped(view, &eye));
+        if self.renders.is_empty() || !self.renders.iter().all(is_near) {
             return Ok(false);
         }
         match self.show(pair, to, ahead) {
@@ -276,6 +294,24 @@ mod tests {
         assert_eq!(head.gl().take_errors(), None);
     }
 
+    /// The head's motion makes the view hardly wider if the guard band is for surfaces that are very near.
+    #[test]
+    fn a_near_guard_band_leaves_the_view_a_view() {
+        let head = Headless::open(Backend::Egl).unwrap();
+        let (gl, settings) = (head.gl(), local());
+        for distance in [0.05, 0.1] {
+            let guard_band = GuardBand::Distance(distance);
+            let frames_between = FramesBetween::Method;
+            let options = StereoOptions { guard_band, frames_between, ..StereoOptions::default() };
+            let mut rig = Rig::new(gl, &settings);
+            let mut method = super::super::create(gl, Method::Synthesized, &settings, &options).unwrap();
+            let pair = pair(Eye::Right, DepthConvention::Reversed);
+            rig.render(method.as_mut(), &pair);
+            let shown = StereoFrame::new(gl, pair.size).unwrap();
+            assert!(method.show_again(&pair, &shown.targets(), 0.5).unwrap(), "{distance} m");
+        }
+    }
+
     fn check(gl: &Rc<Context>, settings: &RenderSettings) {
         let options = StereoOptions { frames_between: FramesBetween::Method, ..StereoOptions::default() };
         let mut rig = Rig::new(gl, settings);
@@ -304,8 +340,10 @@ mod tests {
                 assert!(late < same / least, "{eye:?}: {late}, without motion {same}");
             }
         }
-        let away =
-            moved(&pair(Eye::Right, DepthConvention::Reversed), Vec3::ZERO, Quat::from_rotation_y(1.5));
-        assert!(!method.show_again(&away, &shown.targets(), 0.5).unwrap());
+        // A turn by a button, and a walk by one.
+        for (by, turn) in [(Vec3::ZERO, Quat::from_rotation_y(0.5)), (Vec3::X, Quat::IDENTITY)] {
+            let away = moved(&pair(Eye::Right, DepthConvention::Reversed), by, turn);
+            assert!(!method.show_again(&away, &shown.targets(), 0.5).unwrap());
+        }
     }
 }
