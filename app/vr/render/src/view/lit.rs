@@ -27,6 +27,12 @@ impl<'a> LitScene<'a> {
         self.scene
     }
 
+    /// Returns the pixels per angle of a view over those of the eye of which it is a level; 1 if it is no level.
+    pub fn detail(&self, view: &View) -> f32 {
+        let density = |view: &View| view.size[1] as f32 / view.frustum.height();
+        self.shown.as_ref().map_or(1.0, |[shown, _]| density(view) / density(shown))
+    }
+
     /// Returns the views whose lights are chosen for an image of these views.
     pub fn lit<'v>(&'v self, views: &'v [View]) -> &'v [View] {
         self.shown.as_ref().map_or(views, |shown| shown)

@@ -10,7 +10,7 @@ use super::layout::Layout;
 use super::light_tiles::LightTiles;
 use super::lights::Lights;
 use super::lit::LitScene;
-use super::renderer::{Develop, Renderer, Resolve, line_width};
+use super::renderer::{Develop, Outlines, Renderer, Resolve};
 use super::request::Rectangle;
 use super::scene::{FREE_UNIT, GpuScene};
 use super::shadow::ShadowMap;
@@ -266,7 +266,7 @@ impl Renderer {
                 1,
                 depth,
             );
-            self.draw_resolve(program, targets.layout(), view, None);
+            self.draw_resolve(program, targets, view, None);
         });
     }
 
@@ -287,7 +287,7 @@ impl Renderer {
                 1,
                 targets.resolved.depth(),
             );
-            self.draw_resolve(program, targets.layout(), view, layer.then_some(eye));
+            self.draw_resolve(program, targets, view, layer.then_some(eye));
         });
     }
 
@@ -306,11 +306,14 @@ impl Renderer {
     }
 
     /// Draws `render/resolve.frag` for each eye of an image, or for one layer.
-    fn draw_resolve(&self, program: &Program, layout: Layout, view: &View, layer: Option<Eye>) {
+    fn draw_resolve(&self, program: &Program, targets: &Targets, view: &View, layer: Option<Eye>) {
+        let layout = targets.layout();
+        let outlines = Outlines::of(view, targets.detail);
         let vector = |v: [u32; 2]| IVec2::from(v.map(|n| n as i32));
         program
             .set("view_size", vector(view.size))
-            .set("line_width", line_width(view))
+            .set("line_width", outlines.width)
+            .set("line_strength", outlines.strength)
             .set("nearer", nearer(view.depth.convention));
         set_view(program, view);
         let eyes = match (layer, layout) {
@@ -428,7 +431,7 @@ impl Renderer {
         view: &View,
         slice: [f32; 2],
     ) -> Result<(), GlError> {
-        targets.fit(view, self.needs(true), None)?;
+        targets.fit(view, scene.detail(view), self.needs(true), None)?;
         self.draw_on_sky(targets, scene, &[*view], &Part::Slice(slice));
         self.resolve(targets, view, true, false, None)
     }
@@ -444,7 +447,7 @@ impl Renderer {
         (far, far_view, crop): (&Targets, &View, [u32; 2]),
         depth: bool,
     ) -> Result<(), GlError> {
-        targets.fit(view, self.needs(depth), None)?;
+        targets.fit(view, scene.detail(view), self.needs(depth), None)?;
         let views = std::slice::from_ref(view);
         self.gl.pass("surfaces", || {
             let to = targets.destination(view.size);
@@ -468,7 +471,7 @@ impl Renderer {
         scene: &LitScene,
         view: &View,
     ) -> Result<(), GlError> {
-        targets.fit(view, self.needs(true), None)?;
+        targets.fit(view, scene.detail(view), self.needs(true), None)?;
         let culler = Culler::of_view(view);
         self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
         self.resolve(targets, view, true, false, None)
@@ -483,7 +486,7 @@ impl Renderer {
         from: &Reprojection,
         depth: bool,
     ) -> Result<(), GlError> {
-        targets.fit(view, self.needs(depth), None)?;
+        targets.fit(view, scene.detail(view), self.needs(depth), None)?;
         let culler = Culler::of_view(view);
         self.draw_on_sky_as(targets, scene, &[*view], &Part::Selected(&culler), Some(from));
         self.draw_transparent(targets, scene, std::slice::from_ref(view));

@@ -82,11 +82,24 @@ pub struct RenderedView<'a> {
     pub depth: DepthImage<'a>,
 }
 
-/// Returns the width of ink outlines in pixels: a 900th of a view that is 60 degrees high, and the same angle in any other,
-/// so that all levels of an eye have the same lines.
-pub(super) fn line_width(view: &View) -> i32 {
-    let of_60_degrees = view.size[1] as f32 / view.frustum.height() * 2.0 * 30f32.to_radians().tan();
-    (of_60_degrees / 900.0).round().max(1.0) as i32
+/// How ink outlines are drawn in a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Outlines {
+    /// The width in pixels.
+    pub width: i32,
+    /// The factor on the ink, below 1 for a line that is thinner than a pixel.
+    pub strength: f32,
+}
+
+impl Outlines {
+    /// Returns the outlines of a view, which is a level with this [detail](LitScene::detail). In the whole eye they are a
+    /// 900th of 60 degrees wide, but at least a pixel. All levels have the same ink.
+    pub fn of(view: &View, detail: f32) -> Outlines {
+        let of_60_degrees =
+            view.size[1] as f32 / detail / view.frustum.height() * 2.0 * 30f32.to_radians().tan();
+        let width = (of_60_degrees / 900.0).round().max(1.0) * detail;
+        Outlines { width: width.round().max(1.0) as i32, strength: width.min(1.0) }
+    }
 }
 
 /// Returns the defines of `include/shade.glsl` for a scene.
@@ -374,7 +387,7 @@ impl Renderer {
         view: &View,
         request: &DrawRequest,
     ) -> Result<(), GlError> {
-        targets.fit(view, self.needs(true), None)?;
+        targets.fit(view, scene.detail(view), self.needs(true), None)?;
         targets.request = *request;
         let drawn = request.bounds(view);
         let culler = request.culler(view);
@@ -401,7 +414,7 @@ impl Renderer {
     ) -> Result<bool, GlError> {
         let view = &views[0];
         let to = to.filter(|_| !self.develops() && !self.ink);
-        let direct = targets.fit(view, self.needs(depth), to)?;
+        let direct = targets.fit(view, scene.detail(view), self.needs(depth), to)?;
         targets.request = DrawRequest::default();
         let culler = super::cluster::Culler::of_view(view);
         let part = match views.len() {

@@ -61,6 +61,8 @@ pub struct Targets {
     pub developed: Option<RenderTarget>,
     /// The request that the view in the targets was rendered for.
     pub request: DrawRequest,
+    /// The [detail](super::lit::LitScene::detail) of the view in the targets.
+    pub detail: f32,
     /// The depth convention of the view in the targets.
     pub convention: DepthConvention,
     /// True if the current depth belongs to what was drawn last.
@@ -99,6 +101,7 @@ impl Targets {
             bloom: settings.bloom.then(|| BloomTargets::new(gl)).transpose()?,
             developed: None,
             request: DrawRequest::default(),
+            detail: 1.0,
             convention: DepthConvention::Reversed,
             has_depth: false,
             column: None,
@@ -107,8 +110,15 @@ impl Targets {
 
     /// Fits the targets to views like this one, and chooses the framebuffer; does nothing else if they already fit.
     /// Returns true if the average of the samples can be written to `to` without a copy.
-    pub fn fit(&mut self, view: &View, needs: Needs, to: Option<&EyeTarget>) -> Result<bool, GlError> {
+    pub fn fit(
+        &mut self,
+        view: &View,
+        detail: f32,
+        needs: Needs,
+        to: Option<&EyeTarget>,
+    ) -> Result<bool, GlError> {
         let size = view.size;
+        self.detail = detail;
         self.convention = view.depth.convention;
         let whole = self.layout.texture_size(size);
         self.resolved.resize(whole)?;

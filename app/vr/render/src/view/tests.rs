@@ -7,7 +7,8 @@ use glam::Vec3;
 use super::*;
 use crate::fixture::quad;
 use bloom::{first_renderable, hdr_format};
-use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
+use renderer::Outlines;
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose, View};
 use yoro_assets::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Context, Format};
@@ -307,4 +308,21 @@ fn hdr_falls_back_to_a_renderable_format() {
     assert_eq!(first_renderable(gl, [Format::Depth16, Format::Rgba16F]), Format::Rgba16F);
     assert_eq!(hdr_format(gl), Format::R11G11B10F);
     assert_eq!((gl.take_errors(), gl.object_count()), (None, objects));
+}
+
+#[test]
+fn all_levels_have_the_same_ink() {
+    let of = |pixels: u32, detail: f32| {
+        let frustum = Frustum::symmetric(60f32.to_radians(), 1.0);
+        let pair =
+            EyePair::parallel(Pose::IDENTITY, frustum, 0.063, DepthRange::PAPER, [pixels; 2], Eye::Left);
+        let Outlines { width, strength } = Outlines::of(&pair.view(Eye::Left), detail);
+        (width, strength)
+    };
+    // Half of 2, of 1 and of 3 pixels.
+    assert_eq!([of(1800, 1.0), of(900, 0.5)], [(2, 1.0), (1, 1.0)]);
+    assert_eq!([of(1024, 1.0), of(512, 0.5)], [(1, 1.0), (1, 0.5)]);
+    assert_eq!([of(2700, 1.0), of(1350, 0.5)], [(3, 1.0), (2, 1.0)]);
+    // A small picture has lines of a pixel.
+    assert_eq!(of(100, 1.0), (1, 1.0));
 }
