@@ -65,7 +65,7 @@ fn only_what_is_missing_is_made() {
 #[test]
 fn the_parts_of_all_shards_are_one_run() {
     let dir = tempfile::tempdir().unwrap();
-    let line = "dataset prototype voxel --groups 2 --size 32";
+    let line = "dataset prototype talk --groups 2 --size 32";
     assert_eq!(succeed(dir.path(), &format!("{line} --out whole")).stdout, "4 groups in whole (4 new)\n");
     for (shard, groups) in [("1/3", 1), ("2/3", 1), ("3/3", 2), ("3/5", 1)] {
         let new = if shard == "3/5" { 0 } else { groups };

@@ -1,4 +1,4 @@
-//! Tests on a real GL context: golden images, shader variants and costs, GL objects. Also scenes on Vulkan.
+//! Tests on a real GL context: golden images, shader variants and costs, GL objects.
 
 mod frame_passes;
 mod golden;
@@ -8,4 +8,3 @@ mod objects;
 mod refusals;
 mod shader_cost;
 mod shaders;
-mod vulkan;

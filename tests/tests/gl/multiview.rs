@@ -12,7 +12,7 @@ const LAUNCHER: &str = "YORO_TEST_MULTIVIEW";
 const TESTS: [&str; 5] = [
     "methods::single_pass_stereo_equals_two_renders",
     "methods::a_missing_driver_feature_is_one_sentence",
-    "objects::a_hundred_frames_hold_as_many_objects_as_ten",
+    "objects::thirty_frames_hold_as_many_objects_as_ten",
     "objects::new_sizes_and_eyes_replace_objects",
     "shaders::every_shader_compiles_in_every_variant",
 ];

@@ -189,11 +189,12 @@ fn pictures_equal_those_of_opengl() {
     let gl = Gl::open();
     for rendering in Rendering::ALL {
         with_gpu(rendering, |gpu| {
-            for (i, (warp, range)) in warps().into_iter().enumerate() {
+            let (warps, setup) = (warps(), Setup::PLAIN);
+            let all: Vec<Warp> = warps.iter().map(|(warp, _)| *warp).collect();
+            // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
+            let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&all)).unwrap() };
+            for (i, (warp, range)) in warps.into_iter().enumerate() {
                 let picture = picture(&warp, range, i as u64);
-                let setup = Setup::PLAIN;
-                // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
-                let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
                 let got = synthesize(gpu, &mut gather, &setup, &picture);
                 assert_equal(&got.rgba, &gl.run(&picture).rgba, 4, &format!("{rendering:?}, {warp:?}"));
             }
