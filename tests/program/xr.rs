@@ -866,31 +866,6 @@ fn jumps_are_not_extrapolated() {
     assert!(simulated.views().iter().all(|(_, views)| views[0].synthesis.is_none()));
 }
 
-/// `cargo test -p yoro --test program -- --ignored asymmetric --nocapture`. Symmetric eyes of the same width show which
-/// differences in quality do not come from the frusta.
-#[test]
-#[ignore = "takes minutes"]
-fn asymmetric_eyes_in_every_scene() {
-    println!("{:<12}{:>12}{:>26}{:>26}{:>26}", "SSIM, dB", "", "asymmetric", "its outer tenth", "symmetric");
-    for scene in yoro_scenes::BUILTINS {
-        for size in [[1024, 1024], [1680, 1760]] {
-            let eyes = asymmetric(size);
-            let symmetric = eyes.map(|eye| ScriptEye { fov_degrees: [-47.5, 47.5, 48.5, -48.5], ..eye });
-            let (whole, border) = synthesized(scene.name, eyes);
-            let (same, _) = synthesized(scene.name, symmetric);
-            let figures = |q: Quality| format!("{:.4}, {:.2} dB", q.ssim_gaussian, q.psnr);
-            println!(
-                "{:<12}{:>12}{:>26}{:>26}{:>26}",
-                scene.name,
-                format!("{}x{}", size[0], size[1]),
-                figures(whole),
-                figures(border),
-                figures(same)
-            );
-        }
-    }
-}
-
 /// Monado's service with its own folder.
 struct Monado {
     programs: PathBuf,

@@ -22,11 +22,11 @@ use yoro_bench::streaming::Receiver;
 use yoro_context::{Backend, Headless};
 use yoro_files::http::{self, Request};
 use yoro_media::rgb_image;
-use yoro_media::video::{Decoder, LiveEncoder, LiveEncoderKind, Planes};
+use yoro_media::video::{LiveEncoder, LiveEncoderKind, Planes};
 use yoro_metrics::{Channels, psnr};
 use yoro_render::{PreparedScene, RenderSettings, ViewReader};
 use yoro_stream::{
-    Content, EyeView, FrameHeader, FrameRenderer, FromClient, FromServer, Mode, Report, VERSION, ViewRequest,
+    Content, EyeView, FrameHeader, FrameRenderer, FromClient, FromServer, Mode, VERSION, ViewRequest,
 };
 
 use super::{GL, Page, Server, difference, headset};
@@ -440,72 +440,6 @@ fn without_an_address_the_one_by_which_others_are_reached_is_served() {
     let host = server.address.strip_prefix("https://").unwrap().trim_end_matches('/');
     let answer = ask(TcpStream::connect(host).unwrap(), host, "");
     assert!(!answer.starts_with("HTTP"), "without encryption: {answer}");
-}
-
-/// Returns the resident memory of a process in bytes.
-fn resident(id: u32) -> u64 {
-    let pages = std::fs::read_to_string(format!("/proc/{id}/statm")).unwrap();
-    pages.split(' ').nth(1).unwrap().parse::<u64>().unwrap() * 4096
-}
-
-/// A client that decodes every frame receives ten thousand. Each shows the newest view that was requested, or the one
-/// before it.
-#[test]
-#[ignore = "takes minutes"]
-fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
-    const FRAMES: u32 = 10_000;
-    let (server, link) = serve(240, &[], None);
-    let host = server.address.trim_start_matches("http://").trim_end_matches('/').to_owned();
-    let mut stream = TcpStream::connect(&host).unwrap();
-    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
-    let answer = ask(&mut stream, &host, &format!("Origin: http://{host}\r\n"));
-    assert!(answer.starts_with("HTTP/1.1 101"), "{answer}");
-    let mut socket = WebSocket::from_raw_socket(stream, Role::Client, None);
-    let token = token(&link);
-    let token = u128::from_str_radix(token, 16).unwrap().to_be_bytes();
-    let say = |socket: &mut WebSocket<TcpStream>, message: FromClient| {
-        socket.send(Message::binary(message.to_bytes())).unwrap();
-    };
-    say(&mut socket, FromClient::Hello { version: VERSION, token });
-    let welcome = socket.read().unwrap().into_data();
-    let Some(FromServer::Welcome(home)) = FromServer::read(&welcome) else { panic!("no welcome") };
-
-    let mut decoder = Decoder::new().unwrap();
-    let (mut early, mut bytes, mut report) = (0, 0, Report::default());
-    let start = Instant::now();
-    for expected in 0..FRAMES {
-        // The head moves in a circle with a diameter of 40 cm.
-        let angle = expected as f32 * 0.01;
-        let at = home.position + 0.2 * glam::Vec3::new(angle.sin(), 0.0, angle.cos());
-        let eye = EyeView { pose: Pose { position: at, ..home }, frustum: Frustum::symmetric(1.0, 1.0) };
-        let mut other = eye;
-        other.pose.position += home.orientation * (0.063 * glam::Vec3::X);
-        let time = f64::from(expected);
-        let request = ViewRequest { time_ms: time, eyes: [eye, other], dominant: Eye::Right, size: [64, 64] };
-        say(&mut socket, FromClient::Request(request));
-        let message = socket.read().unwrap().into_data();
-        let Some(FromServer::Frame { number, header, data, .. }) = FromServer::read(&message) else {
-            panic!("frame {expected} is no frame")
-        };
-        assert_eq!((number, header.time_ms), (expected, time));
-        decoder.decode(data).unwrap();
-        bytes += data.len();
-        report.arrived(number, start.elapsed().as_secs_f64() * 1e3);
-        report.decoded = Some(number);
-        say(&mut socket, FromClient::Report(report));
-        if expected == FRAMES / 10 {
-            early = resident(server.child.id());
-        }
-    }
-    let late = resident(server.child.id());
-    println!(
-        "{FRAMES} frames in {:.0} s, {} bytes each, {} then {} KiB of memory",
-        start.elapsed().as_secs_f32(),
-        bytes / FRAMES as usize,
-        early / 1024,
-        late / 1024
-    );
-    assert!(late < early + (4 << 20), "{early} bytes after a tenth, {late} at the end");
 }
 
 /// What a client has said, but for requests and what it repeats.

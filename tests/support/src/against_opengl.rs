@@ -271,7 +271,7 @@ pub fn expected_depth(picture: &Picture, source_map: &[u32]) -> Vec<f32> {
 }
 
 /// Returns colour and depth as textures, and a target of the colour's format.
-pub fn gl_images(gl: &Rc<Context>, picture: &Picture, format: gl::Format) -> ([Texture; 2], RenderTarget) {
+fn gl_images(gl: &Rc<Context>, picture: &Picture, format: gl::Format) -> ([Texture; 2], RenderTarget) {
     let Picture { warp, rgba, depth } = picture;
     let color = Texture::new(gl, warp.source_size, format, Filter::Linear).unwrap();
     color.upload(rgba);

@@ -5,9 +5,7 @@ use glam::{DVec2, Vec3};
 use super::laws::{on_every_backend, pair, scene};
 use super::posed::{MOTIONS, moved, run};
 use yoro::eyes::{DepthConvention, Eye, EyePair, GuardBand, PoseWarp, View};
-use yoro::opengl::{AnyView, Destination, GlError, Options, Outputs, Part, Profiling, Source};
-use yoro_context::{Backend, Headless};
-use yoro_gl::{Filter, Format, RenderTarget, Texture};
+use yoro::opengl::{AnyView, GlError, Options, Outputs, Part};
 
 /// Returns a view of `size`, and a moved and turned copy of it.
 fn views(size: [u32; 2], way: Vec3, turn: [f32; 3], convention: DepthConvention) -> [View; 2] {
@@ -294,57 +292,4 @@ fn what_cannot_be_synthesized_is_refused() {
         let refused = AnyView::new(gl, &Options::default(), outputs);
         assert!(matches!(refused, Err(GlError::Unsupported(_))));
     });
-}
-
-/// Measures the passes for a head that has moved by 2 cm, with the near plane at three distances and surfaces that stay
-/// in place.
-#[test]
-#[ignore = "measures: cargo test -p yoro --test synthesis -- --ignored --nocapture cost_of_any_view"]
-fn cost_of_any_view() {
-    let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
-    let gl = headless.gl();
-    gl.set_profiling(Profiling::Finish);
-    let [w, h] = [1024, 1024];
-    // A slanted wall, with boxes in front of it.
-    let distance = |x: u32, y: u32| match (x / 128, y / 256) {
-        (2, 1) => 0.6,
-        (4, 0 | 1) => 1.0,
-        (6, 2) => 2.0,
-        _ => 4.0 + 3.0 * x as f32 / w as f32,
-    };
-    let mut passes = [0.3f32, 0.1, 0.05].map(|near| {
-        let mut source = pair([w, h], Eye::Left, 0.0, DepthConvention::Reversed).view(Eye::Left);
-        source.depth.near = near;
-        let target = moved(&source, (Vec3::new(0.016, 0.01, -0.006), [0.03, 0.02, 0.01]));
-        let pixels = (0..w * h).map(|i| (i % w, i / w));
-        let depth: Vec<u8> =
-            pixels.clone().flat_map(|(x, y)| source.depth.depth(distance(x, y)).to_ne_bytes()).collect();
-        let rgba: Vec<u8> = pixels.flat_map(|(x, y)| [x as u8, y as u8, (x + y) as u8, 255]).collect();
-        let texture = |format, bytes: &[u8]| {
-            let texture = Texture::new(gl, [w, h], format, Filter::Nearest).unwrap();
-            texture.upload(bytes);
-            texture
-        };
-        let images = [texture(Format::Rgba8, &rgba), texture(Format::R32F, &depth)];
-        let warp = PoseWarp::new(&source, &target).unwrap();
-        let any_view = AnyView::new(gl, &Options::default(), Outputs::default()).unwrap();
-        (near, images, warp, any_view, Vec::new())
-    });
-    let target = RenderTarget::new(gl, [w, h], &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
-    for _ in 0..9 {
-        for (_, [color, depth], warp, any_view, times) in &mut passes {
-            gl.take_pass_times();
-            let source = Source::new(color.raw(), depth.raw());
-            any_view.synthesize(source, warp, &Destination::whole(&target)).unwrap();
-            times.push(gl.take_pass_times());
-        }
-    }
-    for (near, _, _, _, times) in &passes {
-        let medians = (0..times[0].len()).map(|pass| {
-            let mut of: Vec<f64> = times.iter().map(|times| times[pass].time.as_secs_f64() * 1e3).collect();
-            of.sort_by(f64::total_cmp);
-            format!("{} {:.1} ms", times[0][pass].name, of[of.len() / 2])
-        });
-        println!("near plane at {near} m: {}", medians.collect::<Vec<_>>().join(", "));
-    }
 }

@@ -11,20 +11,17 @@ use std::cell::Cell;
 use rand::{Rng, SeedableRng};
 
 use against_opengl::{
-    Gl, Picture, RANDOM_RANGE, assert_equal, cut, expected_depth, eyes, gl_images, gl_srgb, pasted, picture,
+    Gl, Picture, RANDOM_RANGE, assert_equal, cut, expected_depth, eyes, gl_srgb, pasted, picture,
     random_cases, warps,
 };
 use harness::{Gpu, Image, READ, Rendering, WRITTEN, largest, with_gpu};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, GuardBand, Warp};
-use yoro::opengl::{self, Destination, Outputs};
 use yoro::synthesis::ArgumentError;
 use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
     AnyView, Frame, Gather, ImageState, Options, Pipeline, SourceImages, TargetImages, Use, Uses, VulkanError,
 };
-use yoro_context::{Backend, Headless};
-use yoro_gl as gl;
 use yoro_test_support::{against_opengl, harness};
 
 /// An allocator that counts this thread's allocations.
@@ -538,49 +535,6 @@ fn passes_are_timed() {
                     synthesize(gpu, &mut gather, &Setup::PLAIN, &picture);
                 }
             }
-        }
-    });
-}
-
-/// Measures the passes.
-#[test]
-#[ignore = "measures: cargo test -p yoro --test vulkan -- --ignored --nocapture cost"]
-fn cost_of_the_passes() {
-    let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
-    let context = headless.gl();
-    context.set_profiling(gl::Profiling::Finish);
-    with_gpu(Rendering::Core, |gpu| {
-        let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
-        let warp = eyes([1024; 2], Eye::Right, range).synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
-        let picture = picture(&warp, range, 1);
-        let options = Options { timed_frames: 1, ..Setup::PLAIN.options(&[warp]) };
-        let mut times: [Vec<[f64; 3]>; 2] = Default::default();
-        // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
-        let mut gather = unsafe { Gather::new(&gpu.host(), &options).unwrap() };
-        let (source, target) = gl_images(context, &picture, gl::Format::Rgba8);
-        let textures = opengl::Source::new(source[0].raw(), source[1].raw());
-        let mut on_gl =
-            opengl::Gather::new(context, &opengl::Options::default(), Outputs::default()).unwrap();
-        for _ in 0..21 {
-            context.take_pass_times();
-            on_gl.synthesize(textures, &warp, &Destination::whole(&target)).unwrap();
-            let passes = context.take_pass_times();
-            times[0].push(std::array::from_fn(|i| passes[i].time.as_secs_f64() * 1e3));
-            drop(synthesize(gpu, &mut gather, &Setup::PLAIN, &picture));
-            // SAFETY: the frame's commands have been executed.
-            let passes = unsafe { gather.pass_times() }.unwrap().expect("finished");
-            times[1].push([passes.tiles, passes.spans, passes.march].map(|time| time.as_secs_f64() * 1e3));
-        }
-        for (name, times) in [&context.capabilities().summary(), &gpu.name()].into_iter().zip(&times) {
-            let medians: [f64; 3] = std::array::from_fn(|pass| {
-                let mut all: Vec<f64> = times.iter().map(|times| times[pass]).collect();
-                all.sort_by(f64::total_cmp);
-                all[all.len() / 2]
-            });
-            println!(
-                "{name}: tiles {:.2} ms, spans {:.2} ms, march {:.2} ms",
-                medians[0], medians[1], medians[2]
-            );
         }
     });
 }

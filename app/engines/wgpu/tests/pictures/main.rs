@@ -5,17 +5,14 @@ mod harness;
 mod levels;
 mod nearest;
 
-use std::time::Instant;
-
 use rand::{Rng, SeedableRng};
 
 use against_opengl::{
-    Gl, Picture, RANDOM_RANGE, assert_equal, cut, expected_depth, eyes, gl_images, gl_srgb, pasted, picture,
+    Gl, Picture, RANDOM_RANGE, assert_equal, cut, expected_depth, eyes, gl_srgb, pasted, picture,
     random_cases, warps,
 };
 use harness::{Gpu, depth_of, one_layer, with_gpus};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
-use yoro::opengl;
 use yoro::synthesis::backend::WarpKind;
 use yoro_test_support::against_opengl;
 use yoro_wgpu::wgpu::{Backends, TextureAspect, TextureFormat, TextureUsages};
@@ -407,48 +404,4 @@ fn a_lost_device_is_an_error() {
     let (source, target) = (Source::new(&color, &depth), Target::new(&into));
     let lost = gather.record(&gpu.device, &gpu.queue, &mut encoder, &source, &warp, &target);
     assert_eq!(lost, Err(WgpuError::DeviceLost));
-}
-
-/// Measures the passes.
-#[test]
-#[ignore = "measures: cargo test -p yoro-wgpu --test pictures -- --ignored --nocapture cost"]
-fn cost_of_the_passes() {
-    if std::env::var_os("YORO_TEST_WITHOUT_VULKAN").is_some() {
-        return println!("LEFT OUT: wgpu on Vulkan");
-    }
-    let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
-    let warp = eyes([1024; 2], Eye::Right, range).synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
-    let picture = picture(&warp, range, 1);
-    let gl = Gl::open();
-    let (textures, into) = gl_images(gl.headless.gl(), &picture, yoro_gl::Format::Rgba8);
-    let on_gl_source = opengl::Source::new(textures[0].raw(), textures[1].raw());
-    let (options, outputs) = Default::default();
-    let mut on_gl = opengl::Gather::new(gl.headless.gl(), &options, outputs).unwrap();
-
-    let gpu = Gpu::open(Backends::VULKAN).unwrap();
-    let color = gpu.texture(Setup::PLAIN.color, warp.source_size, 1);
-    let depth = gpu.texture(Setup::PLAIN.depth, warp.source_size, 1);
-    let target = gpu.texture(Setup::PLAIN.target, warp.target_size, 1);
-    gpu.upload_rgba8(&color, 0, &picture.rgba);
-    gpu.upload_depth(&depth, 0, &picture.depth);
-    let [color, depth, target] = [color, depth, target].map(|texture| depth_of(&texture, 0));
-    let (source, target) = (Source::new(&color, &depth), Target::new(&target));
-    let mut gather = Setup::PLAIN.gather(&gpu);
-
-    let mut times: [Vec<f64>; 2] = Default::default();
-    for _ in 0..22 {
-        let start = Instant::now();
-        on_gl.synthesize(on_gl_source, &warp, &yoro_gl::Destination::whole(&into)).unwrap();
-        gl.headless.gl().finish();
-        times[0].push(start.elapsed().as_secs_f64() * 1e3);
-        let start = Instant::now();
-        gpu.run(|encoder| gather.record(&gpu.device, &gpu.queue, encoder, &source, &warp, &target)).unwrap();
-        times[1].push(start.elapsed().as_secs_f64() * 1e3);
-    }
-    for (name, times) in ["OpenGL", "wgpu"].into_iter().zip(&mut times) {
-        // The first run compiles.
-        times.remove(0);
-        times.sort_by(f64::total_cmp);
-        println!("{name}: {:.1} ms ({:.1} to {:.1})", times[10], times[0], times[20]);
-    }
 }
