@@ -78,7 +78,7 @@ impl Libraries {
     }
 }
 
-/// Returns the compiler of C++, in which the encoder of H.264 is written.
+/// Returns the need for a C++ compiler, which builds the H.264 encoder.
 pub fn cpp() -> apt::Need {
     apt::Need::program("c++", &["g++"])
 }

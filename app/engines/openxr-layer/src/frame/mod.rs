@@ -46,7 +46,7 @@ const MOST_REFUSALS: u32 = 3;
 pub struct Frames {
     /// One for each rendered view, in the order of the views.
     levels: [Level; 2],
-    /// The number of frames since the runtime last accepted motion vectors, of those whose vectors it refused.
+    /// The number of frames in a row whose motion vectors the runtime refused.
     refusals: u32,
     /// The kinds of reasons that have been logged, with what they were reasons for.
     told: HashSet<(&'static str, Discriminant<Reason>)>,
@@ -324,7 +324,7 @@ impl Frames {
         }
     }
 
-    /// Counts the frames in a row whose motion vectors the runtime refused, for a reason.
+    /// Notes whether the runtime took a frame's motion vectors. `refused` is the reason why it did not.
     fn showed_vectors(&mut self, session: &Session, refused: Option<Reason>) {
         self.refusals = if refused.is_some() { self.refusals + 1 } else { 0 };
         if self.refusals == MOST_REFUSALS {

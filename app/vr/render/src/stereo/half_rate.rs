@@ -24,13 +24,16 @@ const NEAREST: f32 = 1.0;
 /// nearer surfaces move so far that it would cost more than a render.
 const NEAREST_MOVED: f32 = 0.5;
 
-/// Radians and metres that no head moves between two renders. Further is a jump: a turn by a button, another viewpoint.
-const JUMP: (f32, f32) = (0.35, 0.25);
+/// The largest turn of a head between two renders, in radians. Further is a jump: a snap turn, another viewpoint.
+const MOST_RADIANS: f32 = 0.35;
+/// The largest distance that a head moves between two renders, in metres.
+const MOST_METRES: f32 = 0.25;
 
-/// True if an eye has jumped from one place to another.
+/// True if an eye is further from its former pose than a head moves between two renders.
 fn has_jumped(from: &View, to: &View) -> bool {
     let (from, to) = (&from.pose, &to.pose);
-    from.orientation.angle_between(to.orientation) > JUMP.0 || from.position.distance(to.position) > JUMP.1
+    from.orientation.angle_between(to.orientation) > MOST_RADIANS
+        || from.position.distance(to.position) > MOST_METRES
 }
 
 /// Renders with a guard band on all four sides, of one eye or of each, shown in any number of frames: each eye is
@@ -340,7 +343,7 @@ mod tests {
                 assert!(late < same / least, "{eye:?}: {late}, without motion {same}");
             }
         }
-        // A turn by a button, and a walk by one.
+        // A snap turn, and a teleport.
         for (by, turn) in [(Vec3::ZERO, Quat::from_rotation_y(0.5)), (Vec3::X, Quat::IDENTITY)] {
             let away = moved(&pair(Eye::Right, DepthConvention::Reversed), by, turn);
             assert!(!method.show_again(&away, &shown.targets(), 0.5).unwrap());

@@ -27,7 +27,7 @@ impl<'a> LitScene<'a> {
         self.scene
     }
 
-    /// Returns the pixels per angle of a view over those of the eye of which it is a level; 1 if it is no level.
+    /// Returns the pixel density of a view over that of the eye of which it is a level; 1 if it is no level.
     pub fn detail(&self, view: &View) -> f32 {
         let density = |view: &View| view.size[1] as f32 / view.frustum.height();
         self.shown.as_ref().map_or(1.0, |[shown, _]| density(view) / density(shown))
