@@ -24,7 +24,7 @@ bool repeats_border(int row) {
 //
 // If all these tiles are planes, what lands is one continuous surface, since a tile's plane includes the column after
 // it. The source column is affine in the pixel where their planes agree.
-vec3 law_of(ivec2 tile, int left, int right) {
+vec3 tile_plane(ivec2 tile, int left, int right) {
     if (left > right || right >= left + LAW_TILES || repeats_border(tile.y)) {
         return vec3(0.0);
     }

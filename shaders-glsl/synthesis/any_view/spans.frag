@@ -13,7 +13,7 @@ TEXTURE(2) uniform highp usampler2D tile_map;
 // The bits of the depth.
 layout(location = 0) out uvec4 span;
 
-const float MOST_STEPS = 64.0;
+const float MAX_STEPS = 64.0;
 
 // The smallest and the largest of four.
 vec2 range_of(vec4 v) {
@@ -51,7 +51,7 @@ void main() {
     vec4 far_x = infinity_x + farthest * parallax_x - 0.5;
     vec4 far_y = infinity_y + farthest * parallax_y - 0.5;
     vec2 moved = max(abs(range_of(reach * parallax_x)), abs(range_of(reach * parallax_y)));
-    float steps = clamp(ceil(max(moved.x, moved.y) / float(TILE.x)), 1.0, MOST_STEPS);
+    float steps = clamp(ceil(max(moved.x, moved.y) / float(TILE.x)), 1.0, MAX_STEPS);
     // A margin of one pixel for rounding.
     const vec4 MARGIN = vec4(-1, 1, -1, 1);
     bool found = false;

@@ -25,7 +25,7 @@ int source_row() {
 const float FIRST_STEPS = 2.0;
 
 // Colour and surface of a pixel whose tile has a law.
-vec4 lawful(vec3 affine, out Surface surface) {
+vec4 sample_planar(vec3 affine, out Surface surface) {
     float place = affine.x + affine.y * gl_FragCoord.x + affine.z * gl_FragCoord.y;
 #if defined(WRITE_DEPTH) || defined(SOURCE_MAP) || defined(MOTION)
     surface.source = clamp((place - columns.y) / columns.x - 0.5, 0.0, float(source_size.x - 1));
@@ -80,7 +80,7 @@ void main() {
     Surface surface;
     if ((PARTS & LAW) != 0 && span.y != 0u) {
         COUNT_TRIP(7)
-        color = lawful(uintBitsToFloat(span.xyz), surface);
+        color = sample_planar(uintBitsToFloat(span.xyz), surface);
     } else if ((PARTS & SEARCH) != 0) {
         color = searched(span.x, surface);
     } else {

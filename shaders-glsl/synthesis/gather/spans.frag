@@ -48,7 +48,7 @@ void main() {
     // From the first candidate to the last one, each rounded outwards, and one more to close the last pair.
     uint search = pack_span(float(high) / TILE_UNITS, ceil(float(high - low) / TILE_UNITS) + 2.0);
     span = uvec4(search, 0u, 0u, 0u);
-    vec3 affine = law_of(tile, left, right);
+    vec3 affine = tile_plane(tile, left, right);
     if (affine.y != 0.0) {
         span.xyz = floatBitsToUint(affine);
     }

@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use crate::in_memory::{self, InMemory, SynthesizedImage};
 use crate::posed;
 use yoro::eyes::{
-    DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, MotionLaw, MotionWarp, Pose,
+    DepthConvention, DepthRange, DisparityMap, Eye, EyePair, Frustum, GuardBand, MotionMap, MotionWarp, Pose,
     PoseWarp, VectorsOf, View, Warp,
 };
 use yoro::opengl::{self, Context, Destination, Options, Outputs};
@@ -151,7 +151,7 @@ pub fn motion_warps() -> Vec<(MotionWarp, DepthRange)> {
     let of = |(i, range)| {
         let views = eyes([150, 41], Eye::BOTH[i % 2], range).synthesis_views(GuardBand::Pixels(13)).unwrap();
         let of = [VectorsOf::Source, VectorsOf::Eye][i / 2];
-        let law = MotionLaw { per_z: -0.2, per_depth: 0.1, constant: 0.15, of };
+        let law = MotionMap { per_z: -0.2, per_depth: 0.1, constant: 0.15, of };
         (MotionWarp { warp: views.warp, law }, range)
     };
     ranges().into_iter().enumerate().map(of).collect()
@@ -228,7 +228,7 @@ pub fn random_cases() -> Vec<RandomCase> {
     let warp = |source_size, target_size, row_offset, offset, scale: f64| Warp {
         source_size,
         target_size,
-        law: DisparityLaw { offset, scale },
+        law: DisparityMap { offset, scale },
         row_offset,
         // Nearer surfaces must move towards larger forward columns.
         target_eye: Eye::BOTH[usize::from(scale < 0.0)],

@@ -4,8 +4,8 @@ use glam::{Quat, Vec3};
 use rand::{Rng, SeedableRng};
 
 use yoro::eyes::{
-    Composition, DepthConvention, DepthRange, Eye, EyePair, Foveation, Frustum, Gaze, GuardBand, Level,
-    Levels, Pose,
+    Composition, DepthConvention, DepthRange, Eye, EyePair, Foveation, Frustum, Gaze, GuardBand, Pose,
+    StereoViews, ViewLayer,
 };
 
 /// The image of a level: a part of a larger one with noise around it.
@@ -53,7 +53,7 @@ impl LevelPicture {
 /// An eye and its levels.
 pub struct Case {
     pub name: String,
-    pub levels: Levels,
+    pub levels: StereoViews,
     pub eye: Eye,
     pub wide: LevelPicture,
     pub inset: Option<LevelPicture>,
@@ -62,7 +62,7 @@ pub struct Case {
 }
 
 impl Case {
-    fn new(name: &str, levels: Levels, eye: Eye, with_depth: bool, seed: u64) -> Case {
+    fn new(name: &str, levels: StereoViews, eye: Eye, with_depth: bool, seed: u64) -> Case {
         let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
         let margins = if seed.is_multiple_of(2) { [[3, 5], [4, 1]] } else { [[0; 2]; 2] };
         let wide = LevelPicture::new(levels.wide.eyes.size, margins, &mut rng);
@@ -82,7 +82,7 @@ impl Case {
 
     /// Returns the share of the inset at a place in its pixels, from its borders and from where what it shows was
     /// rendered. `None` within rounding of the border of what was rendered.
-    fn share(&self, level: &Level, picture: &LevelPicture, place: [f64; 2]) -> Option<f64> {
+    fn share(&self, level: &ViewLayer, picture: &LevelPicture, place: [f64; 2]) -> Option<f64> {
         let within = [0, 1].map(|i| {
             let inside = place[i].min(f64::from(picture.size[i]) - place[i]);
             match self.levels.fade[i] {
@@ -123,7 +123,7 @@ impl Case {
         let shown = &self.levels.shown;
         let frustum = &shown.frusta[self.eye.index()];
         let [width, height] = shown.size;
-        let place = |level: &Level, size: [u32; 2], [x, y]: [u32; 2]| {
+        let place = |level: &ViewLayer, size: [u32; 2], [x, y]: [u32; 2]| {
             let own = &level.eyes.frusta[self.eye.index()];
             let along = |pixel: u32, pixels: u32, [low, high, own_low, own_high]: [f32; 4], size: u32| {
                 let [low, high, own_low, own_high] = [low, high, own_low, own_high].map(f64::from);

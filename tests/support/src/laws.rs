@@ -8,7 +8,7 @@ use std::rc::Rc;
 use rand::{Rng, SeedableRng};
 
 use crate::in_memory::{InMemory, Synthesize};
-use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
+use yoro::eyes::{DepthConvention, DepthRange, DisparityMap, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
 use yoro::synthesis::SOURCE_MAP_HOLE;
 use yoro_context::{Backend, Headless};
 use yoro_gl::Context;
@@ -284,7 +284,7 @@ pub fn one_pixel_and_odd_sizes_work(subjects: &[Subject]) {
                 let warp = Warp {
                     source_size: size,
                     target_size: size,
-                    law: DisparityLaw { offset: 0.0, scale: 5.0 },
+                    law: DisparityMap { offset: 0.0, scale: 5.0 },
                     row_offset: 0,
                     target_eye: Eye::Left,
                     convention: DepthConvention::Reversed,

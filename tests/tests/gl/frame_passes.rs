@@ -17,7 +17,7 @@ use yoro_render::stereo::{
     self, DepthTarget, FramesBetween, Method, MotionTarget, NearFieldPolicy, Pipeline, StereoFrame,
     StereoOptions,
 };
-use yoro_render::{DepthCopy, NearestDepth, PASSES, PreparedScene, RenderSettings, TilePart};
+use yoro_render::{DepthCopy, DepthResolve, PASSES, PreparedScene, RenderSettings, TilePart};
 use yoro_tests::{on_every_backend, scene};
 
 /// A part of a declaration that was seen: the pass, and what it read, loaded or stored.
@@ -31,10 +31,10 @@ type Limit = fn(&mut Capabilities);
 #[test]
 fn passes_do_what_they_declare() {
     let mut seen = Seen::new();
-    let limits: [(Limit, NearestDepth); 3] = [
-        (|capabilities| capabilities.multisample_textures = false, NearestDepth::Carried),
-        (|capabilities| capabilities.tile_samples = false, NearestDepth::Read),
-        (Capabilities::limit_to_es_300, NearestDepth::First),
+    let limits: [(Limit, DepthResolve); 3] = [
+        (|capabilities| capabilities.multisample_textures = false, DepthResolve::InColor),
+        (|capabilities| capabilities.tile_samples = false, DepthResolve::Samples),
+        (Capabilities::limit_to_es_300, DepthResolve::SingleSample),
     ];
     for (limit, way) in limits {
         let headless = Headless::open_limited(Backend::Egl, limit).unwrap();
@@ -56,7 +56,7 @@ fn passes_do_what_they_declare() {
                 if msaa > 1 && style == ShadingStyle::Realistic {
                     assert_eq!(prepared.renderer.nearest_depth(), way);
                 }
-                let reads_samples = prepared.renderer.nearest_depth() == NearestDepth::Read;
+                let reads_samples = prepared.renderer.nearest_depth() == DepthResolve::Samples;
                 for (method, options) in frames() {
                     if settings.supports(method, gl.capabilities()).is_err() {
                         continue;

@@ -1,6 +1,6 @@
 //! Decoding other programs' depth images into depth for synthesis.
 
-use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, Warp};
+use yoro::eyes::{DepthConvention, DepthRange, DisparityMap, Eye, Warp};
 
 /// The encoding of a depth image.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub struct Nearness {
     /// Values from 0, which is infinitely far or at the law's offset, to 1.
     pub values: Vec<f32>,
     /// The law that gives the disparity in pixels between two eyes that are a whole IPD apart.
-    pub law: DisparityLaw,
+    pub law: DisparityMap,
 }
 
 impl StoredDepth {
@@ -58,16 +58,16 @@ impl StoredDepth {
             StoredDepth::Window(range) => {
                 let reversed = DepthRange { convention: DepthConvention::Reversed, ..range };
                 let (c, m) = reversed.inverse_distance_law();
-                let law = DisparityLaw { offset: reach * c, scale: reach * m };
+                let law = DisparityMap { offset: reach * c, scale: reach * m };
                 let standard = range.convention == DepthConvention::Standard;
                 (stored.map(|v| if standard { 1.0 - v } else { v }).collect(), law)
             }
             StoredDepth::Distance { unit } => {
                 // In many depth images zero means "no depth". It is taken as infinitely far.
                 let inverse = |v: f32| if v > 0.0 { 1.0 / (v * unit).max(1e-3) } else { 0.0 };
-                (stored.map(inverse).collect(), DisparityLaw { offset: 0.0, scale: reach })
+                (stored.map(inverse).collect(), DisparityMap { offset: 0.0, scale: reach })
             }
-            StoredDepth::Disparity { offset, scale } => (stored.collect(), DisparityLaw { offset, scale }),
+            StoredDepth::Disparity { offset, scale } => (stored.collect(), DisparityMap { offset, scale }),
         };
         if values.iter().any(|v| v.is_nan()) {
             return Err(StoredDepthError::NotANumber);
@@ -80,7 +80,7 @@ impl StoredDepth {
         if largest <= 1.0 {
             return Ok(Nearness { values, law });
         }
-        let law = DisparityLaw { offset: law.offset, scale: law.scale * f64::from(largest) };
+        let law = DisparityMap { offset: law.offset, scale: law.scale * f64::from(largest) };
         Ok(Nearness { values: values.into_iter().map(|v| v / largest).collect(), law })
     }
 }
@@ -92,7 +92,7 @@ impl Nearness {
         Warp {
             source_size: size,
             target_size: size,
-            law: DisparityLaw { offset: self.law.offset * sign, scale: self.law.scale * sign },
+            law: DisparityMap { offset: self.law.offset * sign, scale: self.law.scale * sign },
             row_offset: 0,
             target_eye,
             convention: DepthConvention::Reversed,

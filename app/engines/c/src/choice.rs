@@ -2,7 +2,7 @@
 
 use std::ptr;
 
-use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, Way};
+use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, StereoPath};
 
 use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
 use crate::versioned::{self, versioned};
@@ -97,10 +97,10 @@ fn null(what: &str) -> Failure {
 }
 
 /// Returns the way for a constant, or `None` for YORO_WAY_OTHER.
-fn way(value: YoroWay) -> Result<Option<Way>, Failure> {
+fn way(value: YoroWay) -> Result<Option<StereoPath>, Failure> {
     match value {
-        YORO_WAY_TWO_VIEWS => Ok(Some(Way::TwoViews)),
-        YORO_WAY_SYNTHESIS => Ok(Some(Way::Synthesis)),
+        YORO_WAY_TWO_VIEWS => Ok(Some(StereoPath::TwoViews)),
+        YORO_WAY_SYNTHESIS => Ok(Some(StereoPath::Synthesis)),
         YORO_WAY_OTHER => Ok(None),
         _ => Err(Failure::value(format!("{value} is no way: give a YORO_WAY_ constant"))),
     }

@@ -1,6 +1,6 @@
 //! Motion vectors of the other eye, for runtimes that make frames between those that are rendered.
 
-use yoro::eyes::{MotionLaw, MotionWarp, Ndc, VectorSpace, VectorsOf};
+use yoro::eyes::{MotionMap, MotionWarp, Ndc, VectorSpace, VectorsOf};
 
 use crate::eyes::YoroEyes;
 use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
@@ -120,7 +120,7 @@ fn vectors_of(value: YoroVectors) -> Result<VectorsOf, Failure> {
 
 impl YoroMotionWarp {
     fn new(motion: &MotionWarp) -> YoroMotionWarp {
-        let MotionLaw { per_z, per_depth, constant, of } = motion.law;
+        let MotionMap { per_z, per_depth, constant, of } = motion.law;
         YoroMotionWarp {
             warp: YoroWarp::new(&motion.warp),
             per_z,
@@ -142,7 +142,7 @@ impl YoroMotionWarp {
         if ![per_z, per_depth, constant].iter().all(|number| number.abs() < 1e9) {
             return Err(Failure::value("a motion warp is impossible: take it from yoro_motion_warp"));
         }
-        let law = MotionLaw { per_z, per_depth, constant, of: vectors_of(self.vectors)? };
+        let law = MotionMap { per_z, per_depth, constant, of: vectors_of(self.vectors)? };
         Ok(MotionWarp { warp: self.warp.checked()?, law })
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec4};
 use yoro::eyes::{
-    DepthRange, DisparityLaw, EyePair, EyesError, Frustum, GuardBand, Pose, SynthesisViews, View, Warp,
+    DepthRange, DisparityMap, EyePair, EyesError, Frustum, GuardBand, Pose, SynthesisViews, View, Warp,
 };
 
 use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
@@ -117,7 +117,7 @@ impl YoroWarp {
         let warp = Warp {
             source_size: [self.source_width, self.source_height],
             target_size: [self.target_width, self.target_height],
-            law: DisparityLaw { offset: self.offset, scale: self.scale },
+            law: DisparityMap { offset: self.offset, scale: self.scale },
             row_offset: self.row_offset,
             target_eye: eye(self.target_eye)?,
             convention: depth(self.depth)?,

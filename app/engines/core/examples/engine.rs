@@ -12,8 +12,8 @@ use glam::{Quat, Vec3};
 use glow::HasContext;
 use image::{Rgb, RgbImage};
 use yoro::eyes::{
-    DepthConvention, DepthRange, Eye, EyePair, FoveationLevel, Frustum, Gaze, GuardBand, Level, MEAN_IPD,
-    Pose, View,
+    DepthConvention, DepthRange, Eye, EyePair, FoveationLevel, Frustum, Gaze, GuardBand, MEAN_IPD, Pose,
+    View, ViewLayer,
 };
 use yoro::opengl::{
     Composer, Context, Destination, Gather, GlState, InsetImage, LevelImage, LevelImages, Options, Outputs,
@@ -92,7 +92,7 @@ fn save(left: &RgbImage, right: &RgbImage, path: &Path) -> Result<(), Box<dyn Er
 
 /// A level's view with the images of both eyes: the rendered one, and the synthesized one.
 struct Rendered {
-    level: Level,
+    level: ViewLayer,
     source: Image,
     other: Image,
 }
@@ -119,7 +119,7 @@ fn foveated(
     // Each frame, with the direction of an eye tracker, if there is one: sizes stay.
     let gaze = Gaze::Axes(pair.axes());
     let levels = pair.levels(strength.foveation().as_ref(), gaze, GuardBand::Distance(1.0))?;
-    let render = |level: Level| -> Result<Rendered, Box<dyn Error>> {
+    let render = |level: ViewLayer| -> Result<Rendered, Box<dyn Error>> {
         let source = engine.create_image(level.views.source.size)?;
         engine.draw(&level.views.source, &source);
         let other = engine.create_image(level.eyes.size)?;

@@ -8,7 +8,7 @@
 use std::ffi::c_void;
 
 use openxr_sys as sys;
-use yoro::eyes::{EyePair, EyesError, GuardBand, MotionLaw, MotionWarp, Ndc, VectorSpace, VectorsOf, Warp};
+use yoro::eyes::{EyePair, EyesError, GuardBand, MotionMap, MotionWarp, Ndc, VectorSpace, VectorsOf, Warp};
 use yoro::synthesis::ArgumentError;
 
 use crate::geometry::{Rectangle, Split, SubmittedDepth};
@@ -216,13 +216,13 @@ impl MotionSplit {
         }
         let of = if can_scale { VectorsOf::Eye } else { VectorsOf::Source };
         let per_depth = law.per_depth / f64::from(depth.max - depth.min);
-        let other = MotionLaw {
+        let other = MotionMap {
             per_z: law.per_z * f64::from(given.scale[2]) * unscaled,
             per_depth: per_depth * unscaled,
             constant: (law.constant - per_depth * f64::from(depth.min)) * unscaled,
             of,
         };
-        let still = MotionLaw { per_z: 0.0, per_depth: 0.0, constant: 0.0, of };
+        let still = MotionMap { per_z: 0.0, per_depth: 0.0, constant: 0.0, of };
         let mut others = scaling;
         others.offset[0] += law.per_z as f32 * given.offset[2];
         Ok(MotionSplit {

@@ -154,7 +154,7 @@ impl<W: WarpKind> Pipeline<W> {
 #[cfg(test)]
 mod tests {
     use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
-    use yoro::eyes::{DepthConvention, DisparityLaw, Eye};
+    use yoro::eyes::{DepthConvention, DisparityMap, Eye};
 
     use super::*;
 
@@ -176,7 +176,7 @@ mod tests {
         Warp {
             source_size: size,
             target_size: size,
-            law: DisparityLaw { offset: 0.0, scale: 5.0 },
+            law: DisparityMap { offset: 0.0, scale: 5.0 },
             row_offset: 0,
             target_eye: Eye::Left,
             convention: DepthConvention::Reversed,

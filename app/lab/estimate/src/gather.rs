@@ -18,7 +18,7 @@ use yoro::eyes::{DepthConvention, DepthRange, EyePair, GuardBand, SynthesisViews
 use yoro::opengl::{Gather, Options, Outputs};
 use yoro::synthesis::Uniforms;
 use yoro_gl::{Context, Filter, Format, RenderTarget};
-use yoro_render::{NearestDepth, PreparedScene, ViewTargets};
+use yoro_render::{DepthResolve, PreparedScene, ViewTargets};
 
 /// The size of a tile in pixels. The first two passes draw one fragment per tile.
 const TILE: [u32; 2] = [16, 8];
@@ -248,8 +248,8 @@ impl Meter {
     ///
     /// # Errors
     /// If the driver refuses it, or if the table lacks a program.
-    pub fn new(gl: &Rc<Context>, device: Device, depth: NearestDepth) -> anyhow::Result<Meter> {
-        let depth_pairs = depth == NearestDepth::Carried;
+    pub fn new(gl: &Rc<Context>, device: Device, depth: DepthResolve) -> anyhow::Result<Meter> {
+        let depth_pairs = depth == DepthResolve::InColor;
         let options = Options { depth_pairs, ..Options::default() };
         Ok(Meter {
             device,

@@ -29,7 +29,7 @@ pub const MARCH: &str = "gather march";
 pub struct Assumed {
     /// True if `glBlitFramebuffer` averages samples in memory instead of in the tiles.
     pub averages_in_memory: bool,
-    /// True if the depth that is carried in two half floats ([`yoro_render::NearestDepth::Carried`]) takes 2 bytes
+    /// True if the depth that is carried in two half floats ([`yoro_render::DepthResolve::InColor`]) takes 2 bytes
     /// instead of 4, as a Vulkan host stores it that resolves depth into 16 bits. A simulation: OpenGL ES cannot.
     pub depth_in_16_bits: bool,
     /// Share of the synthesized pixels whose tile has a law, 0 to 1.

@@ -17,7 +17,7 @@ use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::outputs::Files;
 use crate::cli::settings::{OneSample, SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
-use yoro::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
+use yoro::eyes::{DepthConvention, DisparityMap, Eye, Frustum, GuardBand, Pose};
 use yoro_assets::{CameraPath, Scene, ShadingStyle, Viewpoint, path};
 use yoro_bench::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use yoro_bench::inpaint::{Patcher, PatcherKind};
@@ -129,7 +129,7 @@ struct Depth {
     encoding: &'static str,
     bits: u8,
     /// The law `x_other = x + offset + scale * value`, with values from 0 to 1.
-    law: DisparityLaw,
+    law: DisparityMap,
 }
 
 impl DatasetArgs {

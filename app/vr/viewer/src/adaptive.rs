@@ -73,7 +73,7 @@ impl Controller {
     const WARM: f32 = 0.85;
     const HOT: f32 = 0.95;
     const WINDOWS_UP: u32 = 6;
-    const MOST_WINDOWS_UP: u32 = 96;
+    const MAX_WINDOWS_UP: u32 = 96;
     /// A step up that does not last this many windows has failed.
     const TRIAL: u32 = 10;
     /// Frames longer than this are interruptions, not load.
@@ -142,7 +142,7 @@ impl Controller {
             self.down();
         } else if late_share > Self::LATE_SHARE || gpu.is_some_and(|g| g > Self::FULL_LOAD) {
             if self.since_up < Self::TRIAL {
-                self.needed_windows = (self.needed_windows * 2).min(Self::MOST_WINDOWS_UP);
+                self.needed_windows = (self.needed_windows * 2).min(Self::MAX_WINDOWS_UP);
             }
             self.down();
         } else if window.late > 0 {

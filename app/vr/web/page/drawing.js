@@ -14,7 +14,7 @@ const { canvas } = app;
 /** The largest number of pixels of the canvas. */
 const MAX_PIXELS = 4e6;
 /** This many slow frames in a row end the choice of the cheaper method: the device is too slow for the scene. */
-const MOST_SLOW = 4;
+const MAX_SLOW = 4;
 /** The maximum width of a saved wiggle picture in pixels. */
 const WIGGLE = 640;
 
@@ -105,7 +105,7 @@ function frame(now) {
       app.page.endFrame(now, 0);
       // Frames of a second or more count as pauses, which say nothing about the methods' costs.
       slow = now - drawn < 1000 ? 0 : slow + 1;
-      if (choosing(slow >= MOST_SLOW)) due = RENDER;
+      if (choosing(slow >= MAX_SLOW)) due = RENDER;
       drawn = now;
     }
     if (work !== NOTHING) {

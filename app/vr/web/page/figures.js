@@ -10,7 +10,7 @@ const REST = 500;
 const LENGTH = 1000;
 /** The shortest batch, in ms: browsers round their clocks, at worst to 1 ms. */
 const BATCH = 20;
-const MOST_FRAMES = 200;
+const MAX_FRAMES = 200;
 
 let timer = 0;
 /** The measurement in progress; another one ends it. */
@@ -77,11 +77,11 @@ async function measure(run) {
     await nextTask();
     if (current !== run || !compares()) return;
     const taken = pair(frames);
-    const short = taken.map((ms, i) => ms < BATCH && frames[i] < MOST_FRAMES);
+    const short = taken.map((ms, i) => ms < BATCH && frames[i] < MAX_FRAMES);
     if (short.includes(true)) {
       pairs = [];
       taken.forEach((ms, i) => {
-        if (short[i]) frames[i] = Math.min(MOST_FRAMES, Math.max(frames[i] + 1, Math.ceil((frames[i] * BATCH * 1.3) / Math.max(ms, 0.5))));
+        if (short[i]) frames[i] = Math.min(MAX_FRAMES, Math.max(frames[i] + 1, Math.ceil((frames[i] * BATCH * 1.3) / Math.max(ms, 0.5))));
       });
     } else {
       pairs.push(taken.map((ms, i) => ms / frames[i]));

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
-use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, FoveationLevel, Gaze, Levels, Pose};
+use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, FoveationLevel, Gaze, Pose, StereoViews};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{
@@ -117,7 +117,7 @@ impl Settings {
     }
 
     /// Returns the levels of a headset's eyes; `None` if they are rendered as a whole.
-    pub fn levels(&self, pair: &EyePair) -> Option<Levels> {
+    pub fn levels(&self, pair: &EyePair) -> Option<StereoViews> {
         let foveation = self.foveation.foveation()?;
         let (gaze, guard) = (Gaze::Axes(pair.axes()), self.stereo_options().guard_band);
         pair.levels(Some(&foveation), gaze, guard).ok().filter(|levels| levels.inset.is_some())

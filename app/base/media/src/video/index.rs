@@ -58,7 +58,7 @@ pub struct EncodedPicture {
 /// The largest box of a file that is read whole, in bytes. An index has about 20 for a picture.
 const LARGEST_BOX: u64 = 256 << 20;
 /// The most pictures that are decoded before one that is shown earlier: H.264's limit.
-const MOST_HELD: usize = 16;
+const MAX_HELD: usize = 16;
 
 /// Reads a part of a file.
 pub(crate) fn read_at(file: &mut (impl Read + Seek), position: u64, size: usize) -> io::Result<Vec<u8>> {
@@ -247,7 +247,7 @@ fn sort(pictures: &mut [EncodedPicture], times: &[(i64, u32)]) -> Option<Vec<f64
     for (i, picture) in pictures.iter().enumerate() {
         is_decoded[picture.shown] = true;
         shown += is_decoded[shown..].iter().take_while(|is| **is).count();
-        if i + 1 - shown > MOST_HELD {
+        if i + 1 - shown > MAX_HELD {
             return None;
         }
     }

@@ -6,10 +6,10 @@
 //! and no clock: it is told when frames ended and what they cost, and says what to render next.
 //!
 //! ```
-//! use yoro::choice::{Chooser, Cost, FrameEnd, Way};
+//! use yoro::choice::{Chooser, Cost, FrameEnd, StereoPath};
 //!
-//! let mut chooser = Chooser::new(Way::Synthesis);
-//! # let (mut now_ns, render, timer) = (0, |_: Way| (), |way| Some(if way == Way::Synthesis { 6.1 } else { 8.9 }));
+//! let mut chooser = Chooser::new(StereoPath::Synthesis);
+//! # let (mut now_ns, render, timer) = (0, |_: StereoPath| (), |way| Some(if way == StereoPath::Synthesis { 6.1 } else { 8.9 }));
 //! # for _ in 0..200 {
 //! // Each frame:
 //! let way = chooser.way();
@@ -23,7 +23,7 @@
 //!     heat: None,
 //! });
 //! # }
-//! # assert_eq!((chooser.way(), chooser.is_measuring()), (Way::Synthesis, false));
+//! # assert_eq!((chooser.way(), chooser.is_measuring()), (StereoPath::Synthesis, false));
 //! ```
 
 mod samples;
@@ -34,16 +34,16 @@ use samples::Samples;
 
 /// A way to make both eyes of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum StereoPath {
     /// Both eyes are rendered.
     TwoViews,
     /// One eye is rendered, the other synthesized.
     Synthesis,
 }
 
-impl Way {
-    /// Both ways, in the order of [`Way::index`].
-    pub const BOTH: [Way; 2] = [Way::TwoViews, Way::Synthesis];
+impl StereoPath {
+    /// Both ways, in the order of [`StereoPath::index`].
+    pub const BOTH: [StereoPath; 2] = [StereoPath::TwoViews, StereoPath::Synthesis];
 
     /// Returns the index in arrays of both ways: 0 for two views, 1 for synthesis.
     pub fn index(self) -> usize {
@@ -51,8 +51,8 @@ impl Way {
     }
 
     /// Returns the other way.
-    pub fn other(self) -> Way {
-        Way::BOTH[1 - self.index()]
+    pub fn other(self) -> StereoPath {
+        StereoPath::BOTH[1 - self.index()]
     }
 }
 
@@ -77,7 +77,7 @@ pub struct FrameEnd {
     pub refresh_hz: f32,
     /// The way in which the frame was rendered; `None` if neither, for example if both eyes were rendered because
     /// synthesis was not possible. Such a frame counts for no way.
-    pub rendered: Option<Way>,
+    pub rendered: Option<StereoPath>,
     /// The cost of this or an earlier frame, if it has become known.
     pub cost: Option<Cost>,
     /// The device's heat, if known, on a scale where 0.1 is a significant change, such as Android's thermal headroom.
@@ -105,10 +105,10 @@ pub enum Reason {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// The chosen way.
-    pub way: Way,
+    pub way: StereoPath,
     /// The reason for the choice.
     pub reason: Reason,
-    /// The compared times in milliseconds, by [`Way::index`]; `None` if there was nothing to compare.
+    /// The compared times in milliseconds, by [`StereoPath::index`]; `None` if there was nothing to compare.
     pub costs_ms: Option<[f32; 2]>,
 }
 
@@ -174,7 +174,7 @@ enum Phase {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Tag {
     Nothing,
-    Measured(Way),
+    Measured(StereoPath),
     Watched,
 }
 
@@ -217,7 +217,7 @@ const HEAT_DRIFT: f32 = 0.1;
 
 impl Chooser {
     /// Returns a chooser that begins with the way `first`, and measures as soon as frames come.
-    pub fn new(first: Way) -> Chooser {
+    pub fn new(first: StereoPath) -> Chooser {
         Chooser {
             choice: Choice { way: first, reason: Reason::Unmeasured, costs_ms: None },
             phase: Phase::Settling(None),
@@ -233,7 +233,7 @@ impl Chooser {
     }
 
     /// Returns the way to render the next frame.
-    pub fn way(&self) -> Way {
+    pub fn way(&self) -> StereoPath {
         match self.phase {
             Phase::Measuring { turn, .. } if turn % 2 == 1 => self.choice.way.other(),
             _ => self.choice.way,
@@ -281,7 +281,7 @@ impl Chooser {
     }
 
     /// Returns what the frame that ends now counts for.
-    fn tag(&self, rendered: Option<Way>) -> Tag {
+    fn tag(&self, rendered: Option<StereoPath>) -> Tag {
         if rendered != Some(self.way()) {
             return Tag::Nothing;
         }
@@ -370,8 +370,8 @@ impl Chooser {
     fn collect(&mut self, now_ns: i64) {
         let Phase::Collecting { left, begin_ns } = &mut self.phase else { return };
         let begin_ns = *begin_ns;
-        let is_missing = |way: Way| self.costs[way.index()].len() < self.intervals[way.index()].len();
-        if *left > 0 && Way::BOTH.into_iter().any(is_missing) {
+        let is_missing = |way: StereoPath| self.costs[way.index()].len() < self.intervals[way.index()].len();
+        if *left > 0 && StereoPath::BOTH.into_iter().any(is_missing) {
             *left -= 1;
             return;
         }
@@ -392,7 +392,7 @@ impl Chooser {
         if self.refresh_hz > 0.0 {
             let in_time = intervals.map(|ms| ms * self.refresh_hz <= 1e3 * MAX_REFRESHES_PER_FRAME);
             if in_time[0] != in_time[1] {
-                let way = if in_time[0] { Way::TwoViews } else { Way::Synthesis };
+                let way = if in_time[0] { StereoPath::TwoViews } else { StereoPath::Synthesis };
                 return Choice { way, reason: Reason::HoldsRate, costs_ms: Some(intervals) };
             }
             if costs.is_none() && in_time[0] {

@@ -31,7 +31,7 @@ const SIMPLE: [f32; 2] = [8.9, 6.1];
 impl Device {
     fn new(gpu_ms: [f32; 2], timer: Option<u32>) -> Device {
         Device {
-            chooser: Chooser::new(Way::Synthesis),
+            chooser: Chooser::new(StereoPath::Synthesis),
             now_ns: 5_000_000_000,
             gpu_ms,
             cpu_ms: [1.0; 2],
@@ -56,7 +56,7 @@ impl Device {
     fn frame(&mut self) {
         let way = self.chooser.way();
         self.frames[way.index()] += 1;
-        let rendered = if self.is_near { Way::TwoViews } else { way };
+        let rendered = if self.is_near { StereoPath::TwoViews } else { way };
         let spike = if self.random.random::<f32>() < self.spikes { 10.0 } else { 1.0 };
         let factor = spike * (1.0 + self.noise * self.random.random_range(-1.0..=1.0));
         let gpu_ms = self.gpu_ms[rendered.index()] * factor;
@@ -104,7 +104,7 @@ impl Device {
 
 #[test]
 fn the_cheaper_way_is_chosen_by_late_times_of_a_timer() {
-    for (gpu_ms, way) in [(SIMPLE, Way::Synthesis), ([6.1, 8.9], Way::TwoViews)] {
+    for (gpu_ms, way) in [(SIMPLE, StereoPath::Synthesis), ([6.1, 8.9], StereoPath::TwoViews)] {
         for late in [0, 4, 12] {
             let mut device = Device::new(gpu_ms, Some(late));
             device.measured_after();
@@ -124,7 +124,7 @@ fn the_cheaper_way_is_chosen_by_late_times_of_a_timer() {
 #[test]
 fn noise_and_spikes_do_not_choose() {
     for seed in 0..50 {
-        for (gpu_ms, way) in [([9.0, 7.2], Way::Synthesis), ([7.2, 9.0], Way::TwoViews)] {
+        for (gpu_ms, way) in [([9.0, 7.2], StereoPath::Synthesis), ([7.2, 9.0], StereoPath::TwoViews)] {
             let mut device = Device::new(gpu_ms, Some(4)).noisy(0.2, 0.04, seed);
             device.refresh_hz = 72.0;
             device.measured_after();
@@ -156,10 +156,10 @@ fn heat_is_a_reason_to_measure_again_but_not_at_once() {
     // Memory slows down, which synthesis needs most; not by enough to be seen without heat.
     (device.gpu_ms, device.heat) = ([7.0, 7.9], Some(0.55));
     device.run(40.0);
-    assert_eq!(device.chooser.choice().way, Way::Synthesis, "hardly warmer");
+    assert_eq!(device.chooser.choice().way, StereoPath::Synthesis, "hardly warmer");
     device.heat = Some(0.62);
     assert!(device.measured_after() < 1.0);
-    assert_eq!(device.chooser.choice().way, Way::TwoViews);
+    assert_eq!(device.chooser.choice().way, StereoPath::TwoViews);
     device.heat = Some(0.9);
     let rest = device.measured_after();
     assert!((29.0..31.0).contains(&rest), "{rest} s after the last measurement");
@@ -177,7 +177,7 @@ fn another_cost_of_the_same_way_is_a_reason_to_measure_again() {
     device.gpu_ms = [5.0, 9.0];
     let seconds = device.measured_after();
     assert!(seconds < 4.5, "{seconds} s");
-    assert_eq!((device.chooser.choice().way, device.changes), (Way::TwoViews, 1));
+    assert_eq!((device.chooser.choice().way, device.changes), (StereoPath::TwoViews, 1));
 }
 
 #[test]
@@ -190,24 +190,24 @@ fn another_scene_is_measured_at_once_and_without_prejudice() {
     assert_eq!(device.chooser.choice().reason, Reason::Similar);
     device.chooser.scene_changed();
     assert!(device.chooser.is_measuring());
-    let unmeasured = Choice { way: Way::Synthesis, reason: Reason::Unmeasured, costs_ms: None };
+    let unmeasured = Choice { way: StereoPath::Synthesis, reason: Reason::Unmeasured, costs_ms: None };
     assert_eq!(device.chooser.choice(), unmeasured);
     device.now_ns += 20_000_000_000;
     device.measured_after();
     let choice = device.chooser.choice();
-    assert_eq!((choice.way, choice.reason), (Way::TwoViews, Reason::Cheaper));
+    assert_eq!((choice.way, choice.reason), (StereoPath::TwoViews, Reason::Cheaper));
 }
 
 #[test]
 fn the_display_hides_what_fits_into_a_refresh() {
     // (GPU's times, chosen way, reason, compared times), without a timer at 60 Hz.
     for (gpu_ms, way, reason, costs_ms) in [
-        ([12.0, 8.0], Way::Synthesis, Reason::BothHoldRate, None),
-        ([8.0, 12.0], Way::Synthesis, Reason::BothHoldRate, None),
-        ([20.0, 12.0], Way::Synthesis, Reason::HoldsRate, Some([33.333, 16.667])),
-        ([12.0, 20.0], Way::TwoViews, Reason::HoldsRate, Some([16.667, 33.333])),
-        ([20.0, 40.0], Way::TwoViews, Reason::Cheaper, Some([33.333, 50.0])),
-        ([20.0, 30.0], Way::Synthesis, Reason::Cheaper, Some([33.333, 33.333])),
+        ([12.0, 8.0], StereoPath::Synthesis, Reason::BothHoldRate, None),
+        ([8.0, 12.0], StereoPath::Synthesis, Reason::BothHoldRate, None),
+        ([20.0, 12.0], StereoPath::Synthesis, Reason::HoldsRate, Some([33.333, 16.667])),
+        ([12.0, 20.0], StereoPath::TwoViews, Reason::HoldsRate, Some([16.667, 33.333])),
+        ([20.0, 40.0], StereoPath::TwoViews, Reason::Cheaper, Some([33.333, 50.0])),
+        ([20.0, 30.0], StereoPath::Synthesis, Reason::Cheaper, Some([33.333, 33.333])),
     ] {
         let mut device = Device::new(gpu_ms, None);
         device.measured_after();
@@ -223,12 +223,12 @@ fn the_display_hides_what_fits_into_a_refresh() {
     assert_eq!(device.chooser.choice().reason, Reason::BothHoldRate);
     device.gpu_ms = [14.0, 20.0];
     assert!(device.measured_after() < 4.5);
-    assert_eq!(device.chooser.choice().way, Way::TwoViews);
+    assert_eq!(device.chooser.choice().way, StereoPath::TwoViews);
     // A display of unknown rate sets no pace.
     let mut device = Device::new([8.0, 12.0], None);
     device.refresh_hz = 0.0;
     device.measured_after();
-    assert_eq!(device.chooser.choice().way, Way::TwoViews);
+    assert_eq!(device.chooser.choice().way, StereoPath::TwoViews);
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn holding_the_rate_is_worth_more_than_the_gpus_time() {
     device.cpu_ms = [19.0, 10.0];
     device.measured_after();
     let choice = device.chooser.choice();
-    assert_eq!((choice.way, choice.reason), (Way::Synthesis, Reason::HoldsRate));
+    assert_eq!((choice.way, choice.reason), (StereoPath::Synthesis, Reason::HoldsRate));
 }
 
 #[test]
@@ -247,11 +247,11 @@ fn frames_in_place_of_synthesis_do_not_count_for_it() {
     device.is_near = true;
     device.measured_after();
     let choice = device.chooser.choice();
-    assert_eq!((choice.way, choice.reason), (Way::Synthesis, Reason::Incomparable));
+    assert_eq!((choice.way, choice.reason), (StereoPath::Synthesis, Reason::Incomparable));
     device.is_near = false;
     let rest = device.measured_after();
     assert!((59.0..61.0).contains(&rest), "{rest} s");
-    assert_eq!(device.chooser.choice().way, Way::TwoViews);
+    assert_eq!(device.chooser.choice().way, StereoPath::TwoViews);
 }
 
 #[test]
@@ -273,7 +273,7 @@ fn a_pause_begins_the_measurement_again() {
 
 #[test]
 fn nonsense_is_no_time() {
-    let mut chooser = Chooser::new(Way::TwoViews);
+    let mut chooser = Chooser::new(StereoPath::TwoViews);
     for frame in 0..400i64 {
         let ms = [f32::NAN, -1.0, 0.0, f32::INFINITY][frame as usize % 4];
         chooser.end_frame(&FrameEnd {
@@ -286,5 +286,5 @@ fn nonsense_is_no_time() {
     }
     let choice = chooser.choice();
     assert!(!chooser.is_measuring());
-    assert_eq!((choice.way, choice.costs_ms), (Way::TwoViews, Some([11.0, 11.0])));
+    assert_eq!((choice.way, choice.costs_ms), (StereoPath::TwoViews, Some([11.0, 11.0])));
 }

@@ -17,13 +17,15 @@ mod warp;
 pub use depth::{DepthConvention, DepthRange};
 pub use error::EyesError;
 pub use extrapolation::Extrapolation;
-pub use foveation::{Composition, Foveation, FoveationLevel, Gaze, InsetPlace, Level, LevelPlace, Levels};
+pub use foveation::{
+    Composition, Foveation, FoveationLevel, Gaze, InsetPlace, LevelPlace, StereoViews, ViewLayer,
+};
 pub use guard_band::{GuardBand, ParseGuardBandError};
-pub use motion::{MotionLaw, MotionWarp, Ndc, VectorSpace, VectorsOf};
+pub use motion::{MotionMap, MotionWarp, Ndc, VectorSpace, VectorsOf};
 pub use pair::{EyeOptions, EyePair, SynthesisViews};
 pub use pose_warp::{GuardedView, HeadMotion, PoseWarp};
 pub use view::{Frustum, Pose, View};
-pub use warp::{DisparityLaw, Warp, full_overlap_distance, minimum_object_distance};
+pub use warp::{DisparityMap, Warp, full_overlap_distance, minimum_object_distance};
 
 /// The mean distance of people's eyes in metres, for when it was not measured.
 pub const MEAN_IPD: f32 = 0.063;

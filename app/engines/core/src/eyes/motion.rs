@@ -38,7 +38,7 @@ pub struct VectorSpace {
 /// there (`per_z = s`), and all other terms are those by which frusta and the distance of the eyes changed between the
 /// frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotionLaw {
+pub struct MotionMap {
     /// X per unit of the vector's z.
     pub per_z: f64,
     /// X per unit of stored depth; 0 unless the eyes' distance, focal length or depth planes changed.
@@ -56,7 +56,7 @@ pub struct MotionWarp {
     /// From the source's image to the eye's.
     pub warp: Warp,
     /// From the source's vectors to the eye's.
-    pub law: MotionLaw,
+    pub law: MotionMap,
 }
 
 impl MotionWarp {
@@ -66,7 +66,7 @@ impl MotionWarp {
             VectorsOf::Eye => 1.0,
             VectorsOf::Source => f64::from(self.warp.source_size[i]) / f64::from(self.warp.target_size[i]),
         };
-        let MotionLaw { per_z, per_depth, constant, .. } = self.law;
+        let MotionMap { per_z, per_depth, constant, .. } = self.law;
         [scale(0) * x + per_z * z + per_depth * depth + constant, scale(1) * y, z]
     }
 }
@@ -130,7 +130,7 @@ impl SynthesisViews {
     /// Returns the warp to the dominant eye's own image.
     fn own_warp(&self) -> Warp {
         let [x, y] = self.dominant_crop;
-        let law = super::DisparityLaw { offset: -f64::from(x), scale: 0.0 };
+        let law = super::DisparityMap { offset: -f64::from(x), scale: 0.0 };
         Warp { law, row_offset: -(y as i32), ..self.warp }
     }
 
@@ -157,7 +157,7 @@ impl SynthesisViews {
             Ndc::ZeroToOne => 1.0,
             Ndc::MinusOneToOne => 2.0,
         };
-        let law = MotionLaw {
+        let law = MotionMap {
             per_z: then.per_depth / per_unit,
             per_depth: now.per_depth - then.per_depth,
             constant: now.constant - then.constant,

@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use super::{DepthRange, DisparityLaw, Eye, EyesError, Frustum, GuardBand, MEAN_IPD, Pose, View, Warp};
+use super::{DepthRange, DisparityMap, Eye, EyesError, Frustum, GuardBand, MEAN_IPD, Pose, View, Warp};
 
 /// The largest width or height of an image in pixels. No driver renders larger ones.
 const MAX_SIDE: f64 = 65536.0;
@@ -232,7 +232,7 @@ impl EyePair {
         // x_t = (tan_t - left_t) f, tan_t = tan_s + side * IPD / z, x_s = (tan_s - left_s) f.
         let (c, m) = self.depth.inverse_distance_law();
         let shift = (-target_eye.side() * ipd * f_px) as f64;
-        let law = DisparityLaw {
+        let law = DisparityMap {
             offset: (frustum.left as f64 - t.frustum.left as f64) * f_px as f64 + shift * c,
             scale: shift * m,
         };

@@ -7,14 +7,14 @@ use super::{DepthConvention, Eye, EyesError};
 /// indices and for pixel centres alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct DisparityLaw {
+pub struct DisparityMap {
     /// Pixels at depth 0.
     pub offset: f64,
     /// Pixels per unit of depth.
     pub scale: f64,
 }
 
-impl DisparityLaw {
+impl DisparityMap {
     /// Returns the displacement in pixels of a stored depth value.
     pub fn displacement(&self, depth: f64) -> f64 {
         self.offset + self.scale * depth
@@ -29,7 +29,7 @@ pub struct Warp {
     /// Size of the synthesized image in pixels.
     pub target_size: [u32; 2],
     /// Displacement along x.
-    pub law: DisparityLaw,
+    pub law: DisparityMap,
     /// `y_target = y_source + row_offset`, rows counted from the bottom.
     pub row_offset: i32,
     /// The eye that is synthesized: nearer pixels move to the right for the left eye, to the left for the right.
@@ -112,7 +112,7 @@ mod tests {
         let warp = Warp {
             source_size: [8, 13],
             target_size: [8, 10],
-            law: DisparityLaw { offset: 0.0, scale: 1.0 },
+            law: DisparityMap { offset: 0.0, scale: 1.0 },
             row_offset: -2,
             target_eye: Eye::Left,
             convention: DepthConvention::Standard,

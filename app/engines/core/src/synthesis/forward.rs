@@ -2,7 +2,7 @@
 
 use crate::eyes::{Eye, Warp};
 
-/// [`DisparityLaw`](crate::eyes::DisparityLaw) in forward columns (`include/warp.glsl`). Columns are mirrored for the
+/// [`DisparityMap`](crate::eyes::DisparityMap) in forward columns (`include/warp.glsl`). Columns are mirrored for the
 /// right eye, so that a larger displacement always means nearer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ForwardLaw {

@@ -8,7 +8,7 @@
 //! | `AnyView` | a view in any pose near it, by a [`PoseWarp`](crate::eyes::PoseWarp) | a segment of any direction |
 //! | `Motion` | a parallel eye, by a [`MotionWarp`](crate::eyes::MotionWarp): motion vectors instead of colour | the source's row |
 //!
-//! A `Composer` makes an eye from the [levels](crate::eyes::Levels) of a foveated view, in one pass.
+//! A `Composer` makes an eye from the [levels](crate::eyes::StereoViews) of a foveated view, in one pass.
 
 pub mod backend;
 mod error;

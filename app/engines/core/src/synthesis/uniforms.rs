@@ -5,7 +5,7 @@ use glam::{IVec2, Vec2, Vec4};
 
 use super::backend::{Places, UniformBlock, tiles};
 use super::forward::ForwardLaw;
-use crate::eyes::{MotionLaw, PoseWarp, VectorsOf, Warp};
+use crate::eyes::{MotionMap, PoseWarp, VectorsOf, Warp};
 
 /// Columns and rows of a tile, as in `include/source.glsl`.
 pub(super) const TILE: [u32; 2] = [16, 8];
@@ -209,7 +209,7 @@ impl Uniforms {
     }
 
     /// Returns the uniforms with the law of motion vectors.
-    pub(super) fn with_motion(self, law: &MotionLaw) -> Uniforms {
+    pub(super) fn with_motion(self, law: &MotionMap) -> Uniforms {
         let of_source = f64::from(u8::from(law.of == VectorsOf::Source));
         let motion = [law.per_z, law.per_depth, law.constant, of_source].map(|n| n as f32);
         Uniforms { motion: Vec4::from(motion), ..self }

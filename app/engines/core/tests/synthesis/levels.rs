@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 
 use super::laws::{on_every_backend, scene};
 use super::state::{Hostile, clean, snapshot};
-use yoro::eyes::{DepthConvention, Eye, Foveation, Gaze, GuardBand, Level, View};
+use yoro::eyes::{DepthConvention, Eye, Foveation, Gaze, GuardBand, View, ViewLayer};
 use yoro::opengl::{
     Composer, Context, Destination, Gather, GlState, InsetImage, LevelImage, LevelImages, Options, Outputs,
     Part, Source,
@@ -109,7 +109,7 @@ fn pixels_of_full_density_are_not_changed() {
 }
 
 /// Returns the lower left corner of a level in its eye's image, in pixels.
-fn corner(level: &Level, shown: &View, eye: usize) -> [i32; 2] {
+fn corner(level: &ViewLayer, shown: &View, eye: usize) -> [i32; 2] {
     let (own, all) = (&level.eyes.frusta[eye], &shown.frustum);
     let pixels = |tangents: f32, extent: f32, size: u32| (tangents / extent * size as f32).round() as i32;
     [
@@ -176,7 +176,7 @@ fn a_gaze_that_moves_allocates_and_compiles_nothing() {
             eyes.levels(Some(&Foveation::MEDIUM), gaze, GuardBand::Distance(1.0)).unwrap()
         };
         let first = levels(0.0);
-        let make = |level: &Level| {
+        let make = |level: &ViewLayer| {
             let size = level.views.source.size;
             let (rgba, depth) = scene(size, eyes.depth, 5);
             let images =
@@ -194,7 +194,7 @@ fn a_gaze_that_moves_allocates_and_compiles_nothing() {
         for i in 0..40 {
             let levels = levels(0.04 * (i - 20) as f32);
             let synthesize =
-                |level: &Level, (images, target, gather): &mut ([Texture; 2], RenderTarget, Gather)| {
+                |level: &ViewLayer, (images, target, gather): &mut ([Texture; 2], RenderTarget, Gather)| {
                     let source = Source::new(images[0].raw(), images[1].raw());
                     gather.synthesize(source, &level.views.warp, &Destination::whole(target)).unwrap();
                 };

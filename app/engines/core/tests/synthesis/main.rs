@@ -17,7 +17,7 @@ use rand::{Rng, SeedableRng};
 use in_memory::{InMemory, OUTPUTS, Synthesize, SynthesizedImage};
 use laws::{Subject, on_every_backend, pair, positions, row, scene};
 use reference::Entry;
-use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
+use yoro::eyes::{DepthConvention, DepthRange, DisparityMap, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
 use yoro::opengl::{Context, Gather, Options, Outputs};
 use yoro::synthesis::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE};
 use yoro_test_support::{in_memory, laws, posed};
@@ -132,7 +132,7 @@ fn blends_silhouettes_by_coverage(gl: &Rc<Context>, subject: &Subject) {
         let warp = Warp {
             source_size: [w, h],
             target_size: [w, h],
-            law: DisparityLaw { offset: 0.0, scale },
+            law: DisparityMap { offset: 0.0, scale },
             row_offset: 0,
             target_eye: Eye::Left,
             convention: DepthConvention::Reversed,

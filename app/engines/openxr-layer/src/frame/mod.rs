@@ -39,7 +39,7 @@ use statistics::{Report, Statistics};
 const NO_VECTORS: &str = "shown without its motion vectors";
 
 /// The number of frames in a row after which a runtime that refuses motion vectors gets no more.
-const MOST_REFUSALS: u32 = 3;
+const MAX_REFUSALS: u32 = 3;
 
 /// The state that xrEndFrame keeps between frames.
 #[derive(Default)]
@@ -327,7 +327,7 @@ impl Frames {
     /// Notes whether the runtime took a frame's motion vectors. `refused` is the reason why it did not.
     fn showed_vectors(&mut self, session: &Session, refused: Option<Reason>) {
         self.refusals = if refused.is_some() { self.refusals + 1 } else { 0 };
-        if self.refusals == MOST_REFUSALS {
+        if self.refusals == MAX_REFUSALS {
             self.levels.iter_mut().for_each(|level| level.vectors.are_refused = true);
         }
         if let Some(reason) = refused {

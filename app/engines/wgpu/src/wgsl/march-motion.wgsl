@@ -1087,7 +1087,7 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     return _e188;
 }
 
-fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
+fn sample_planar(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
     var place_3: f32;
     var depths_2: vec2<f32>;
     var param_61: f32;
@@ -1174,7 +1174,7 @@ fn main_1() {
     if _e25 {
         let _e26 = span_2;
         param_64 = bitcast<vec3<f32>>(_e26.xyz);
-        let _e29 = lawful((&param_64), (&param_65));
+        let _e29 = sample_planar((&param_64), (&param_65));
         let _e30 = param_65;
         surface_3 = _e30;
         color_2 = _e29;

@@ -1086,7 +1086,7 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     return _e188;
 }
 
-fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
+fn sample_planar(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
     var place_3: f32;
     var at_4: vec2<f32>;
     var param_61: f32;
@@ -1143,7 +1143,7 @@ fn main_1() {
     if _e15 {
         let _e16 = span_2;
         param_63 = bitcast<vec3<f32>>(_e16.xyz);
-        let _e19 = lawful((&param_63), (&param_64));
+        let _e19 = sample_planar((&param_63), (&param_64));
         let _e20 = param_64;
         surface_3 = _e20;
         color_2 = _e19;

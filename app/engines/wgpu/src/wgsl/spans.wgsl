@@ -78,7 +78,7 @@ fn repeats_border(row_1: ptr<function, i32>) -> bool {
     return _e38;
 }
 
-fn law_of(tile: ptr<function, vec2<i32>>, left: ptr<function, i32>, right: ptr<function, i32>) -> vec3<f32> {
+fn tile_plane(tile: ptr<function, vec2<i32>>, left: ptr<function, i32>, right: ptr<function, i32>) -> vec3<f32> {
     var param: i32;
     var first_1: f32;
     var last: f32;
@@ -415,7 +415,7 @@ fn main_1() {
     param_8 = _e172;
     let _e173 = right_1;
     param_9 = _e173;
-    let _e174 = law_of((&param_7), (&param_8), (&param_9));
+    let _e174 = tile_plane((&param_7), (&param_8), (&param_9));
     affine = _e174;
     let _e176 = affine[1u];
     if (_e176 != 0f) {

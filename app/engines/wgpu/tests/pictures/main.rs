@@ -12,7 +12,7 @@ use against_opengl::{
     random_cases, warps,
 };
 use harness::{Gpu, depth_of, one_layer, with_gpus};
-use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
+use yoro::eyes::{DepthConvention, DepthRange, DisparityMap, Eye, GuardBand, Warp};
 use yoro::synthesis::backend::WarpKind;
 use yoro_test_support::against_opengl;
 use yoro_wgpu::wgpu::{Backends, TextureAspect, TextureFormat, TextureUsages};
@@ -279,7 +279,7 @@ fn sizes_and_rectangles_at_random() {
 #[test]
 fn calls_of_one_submission_do_not_disturb_each_other() {
     let (near, range) = warps()[2];
-    let far = Warp { law: DisparityLaw { scale: 0.25 * near.law.scale, ..near.law }, ..near };
+    let far = Warp { law: DisparityMap { scale: 0.25 * near.law.scale, ..near.law }, ..near };
     let pictures = on_opengl(&Gl::open(), &[(near, range), (far, range)], 5);
     with_gpus(|gpu| {
         let mut gather = Setup::PLAIN.gather(gpu);

@@ -31,7 +31,7 @@ pub enum Measure {
     /// Patchers on reprojected images.
     Patchers,
     /// One render shown at another pose.
-    Reprojection(Displaced),
+    Reprojection(TargetPose),
     /// The frame between two renders, at 72 frames per second, by methods with levels or without.
     HalfRate(Motion, FoveationLevel),
     /// A stream whose frames are shown this number of frames later, at 72 frames per second.
@@ -44,7 +44,7 @@ pub enum Measure {
 
 /// The pose at which a render is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Displaced {
+pub enum TargetPose {
     /// The pose of the same eye this number of frames later, at 72 frames per second.
     Late(Motion, usize),
     /// The pose of the other of two canted eyes.

@@ -26,7 +26,7 @@ pub use blank::{Blank, BlankFinder, BlankView};
 pub use contender::Contender;
 pub use frame::{SUITE as FRAME_SUITE, is_limited, limit};
 pub use holes::HoleFinder;
-pub use job::{Displaced, Job, Measure, Source};
+pub use job::{Job, Measure, Source, TargetPose};
 pub use motion::Motion;
 pub use pictures::{picture_folder, pictures_beside};
 pub use prepared::{FrameTime, PreparedContender};

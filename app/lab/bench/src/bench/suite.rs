@@ -6,7 +6,7 @@ use anyhow::ensure;
 
 use super::contender::Contender;
 use super::frame;
-use super::job::{Displaced, Job, Measure, Source};
+use super::job::{Job, Measure, Source, TargetPose};
 use super::motion::Motion;
 use super::record::Conditions;
 use super::scenes::LazyObject;
@@ -184,7 +184,7 @@ impl Choices {
                 })
             }
             Suite::Reprojection => {
-                self.reprojection(sweep(Measure::Reprojection(Displaced::Canted), Vec::new()))
+                self.reprojection(sweep(Measure::Reprojection(TargetPose::Canted), Vec::new()))
             }
             Suite::HalfRate => {
                 self.half_rate(sweep(Measure::HalfRate(Motion::Still, FoveationLevel::Off), Vec::new()))
@@ -251,16 +251,16 @@ impl Choices {
     }
 
     fn reprojection(&self, sweep: Sweep) -> anyhow::Result<Vec<Job>> {
-        let late = |motion| [1, 2, 3, 4].map(|frames| Displaced::Late(motion, frames));
-        let poses = [vec![Displaced::Canted], late(Motion::Sway).into(), late(Motion::Walk).into()];
+        let late = |motion| [1, 2, 3, 4].map(|frames| TargetPose::Late(motion, frames));
+        let poses = [vec![TargetPose::Canted], late(Motion::Sway).into(), late(Motion::Walk).into()];
         let scenes = if self.quick { &QUICK_SCENES[..] } else { &VARIED_SCENES };
         sweep.over(self.scenes(scenes), poses.concat(), |job, displaced| {
             // Ways of showing a render take part, not methods.
             job.contenders.clear();
             job.measure = Measure::Reprojection(displaced);
             job.conditions.label = Some(match displaced {
-                Displaced::Canted => "canted eyes".to_owned(),
-                Displaced::Late(motion, frames) => format!("{}, {frames} late", motion.name()),
+                TargetPose::Canted => "canted eyes".to_owned(),
+                TargetPose::Late(motion, frames) => format!("{}, {frames} late", motion.name()),
             });
         })
     }

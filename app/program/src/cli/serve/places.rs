@@ -10,7 +10,7 @@ use tokio::sync::watch;
 /// The largest number of connections that wait, from all machines.
 const MOST: usize = 64;
 /// The largest number of connections that wait, from one machine. A browser opens six for the files of a page.
-const MOST_OF_ONE: usize = 16;
+const MAX_OF_ONE: usize = 16;
 
 /// The places of connections that wait for admission.
 #[derive(Clone, Default)]
@@ -37,7 +37,7 @@ impl Places {
         let mut waiting = self.waiting();
         let mut counts: HashMap<IpAddr, usize> = HashMap::new();
         waiting.connections.values().for_each(|(address, _)| *counts.entry(*address).or_default() += 1);
-        let crowded = if counts.get(&address).is_some_and(|count| *count >= MOST_OF_ONE) {
+        let crowded = if counts.get(&address).is_some_and(|count| *count >= MAX_OF_ONE) {
             Some(address)
         } else if waiting.connections.len() >= MOST {
             counts.into_iter().max_by_key(|(_, count)| *count).map(|(address, _)| address)
@@ -91,7 +91,7 @@ mod tests {
         let places = Places::default();
         let take = |last: u8| places.take(IpAddr::from([10, 0, 0, last]));
         let is_lost = |place: &Place| place.lost().now_or_never().is_some();
-        let first: Vec<_> = (0..MOST_OF_ONE).map(|_| take(1)).collect();
+        let first: Vec<_> = (0..MAX_OF_ONE).map(|_| take(1)).collect();
         let other = take(2);
         assert!(first.iter().chain([&other]).all(|place| !is_lost(place)));
         let newest = take(1);
@@ -103,7 +103,7 @@ mod tests {
 
         // Many machines: the one with most makes room.
         let others: Vec<_> = (3..=200).map(take).collect();
-        assert!(first.iter().filter(|place| is_lost(place)).count() >= MOST_OF_ONE - 1);
+        assert!(first.iter().filter(|place| is_lost(place)).count() >= MAX_OF_ONE - 1);
         assert!(others.iter().filter(|place| !is_lost(place)).count() <= MOST);
         assert_eq!(places.waiting().connections.len(), MOST);
         assert!(!is_lost(others.last().unwrap()));

@@ -12,11 +12,11 @@ use super::levels::{EyeLevels, LevelMethods, LevelTargets};
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod, Substituted};
 use super::options::{FramesBetween, Method, MethodChoice, StereoOptions};
 use crate::view::{GpuScene, RenderSettings, Renderer};
-use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, Way};
+use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, StereoPath};
 use yoro::eyes::{EyePair, EyesError, GuardBand};
 use yoro_gl::{Context, GlError};
 
-/// The methods by [`Way::index`].
+/// The methods by [`StereoPath::index`].
 const METHODS: [Method; 2] = [Method::Conventional, Method::Synthesized];
 
 /// Returns the reason why a method cannot use a pair of eyes, or `None` if it can.
@@ -226,9 +226,9 @@ pub struct Auto {
     methods: [LevelMethods; 2],
     chooser: Chooser,
     /// How the last frame was rendered.
-    shown: Option<Way>,
+    shown: Option<StereoPath>,
     /// The same if it counts as that method's, and its time by the clock.
-    rendered: Option<Way>,
+    rendered: Option<StereoPath>,
     clock_ms: Option<f32>,
     /// True until the first frame is rendered.
     is_new: bool,
@@ -240,7 +240,7 @@ impl Auto {
         Ok(Auto {
             gl: gl.clone(),
             methods: [two_views?, synthesis?],
-            chooser: Chooser::new(Way::Synthesis),
+            chooser: Chooser::new(StereoPath::Synthesis),
             shown: None,
             rendered: None,
             clock_ms: None,
@@ -351,7 +351,7 @@ mod tests {
         rig: &mut Rig,
         method: &mut SelectedMethod,
         pair: &EyePair,
-        shows: impl Fn(Way, [Vec<u8>; 2]) -> bool,
+        shows: impl Fn(StereoPath, [Vec<u8>; 2]) -> bool,
     ) -> (Choice, [u32; 2]) {
         let (mut now_ns, mut frames) = (0, [0; 2]);
         while method.auto().unwrap().is_measuring() {

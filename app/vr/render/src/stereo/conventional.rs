@@ -4,7 +4,7 @@ use super::frame::Frame;
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod};
 use super::motion::write_rendered;
 use super::options::{FramesBetween, StereoOptions};
-use crate::view::{DepthImage, GpuScene, Layout, NearestDepth, Renderer, Targets, VectorPass};
+use crate::view::{DepthImage, DepthResolve, GpuScene, Layout, Renderer, Targets, VectorPass};
 use yoro::eyes::Eye;
 use yoro_gl::GlError;
 
@@ -67,7 +67,7 @@ impl Conventional {
     pub(super) fn make(&mut self, renderer: &Renderer) -> Result<(), GlError> {
         if self.targets.is_none() {
             self.targets = Some(renderer.targets(Layout::Single)?);
-            let is_pair = renderer.nearest_depth() == NearestDepth::Carried;
+            let is_pair = renderer.nearest_depth() == DepthResolve::InColor;
             self.vectors = self.has_vectors.then(|| VectorPass::new(&renderer.gl, is_pair)).transpose()?;
         }
         Ok(())

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::frame::{Frame, reversed, write_depth};
 use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
 use super::options::{Pipeline, StereoOptions};
-use crate::view::{DepthImage, GpuScene, Layout, NearestDepth, Renderer, Step, Targets, VectorPass};
+use crate::view::{DepthImage, DepthResolve, GpuScene, Layout, Renderer, Step, Targets, VectorPass};
 use yoro::eyes::{
     DepthConvention, Extrapolation, Eye, EyePair, EyesError, GuardBand, HeadMotion, Ndc, PoseWarp, View,
 };
@@ -25,15 +25,15 @@ const NEAREST: f32 = 1.0;
 const NEAREST_MOVED: f32 = 0.5;
 
 /// The largest turn of a head between two renders, in radians. Further is a jump: a snap turn, another viewpoint.
-const MOST_RADIANS: f32 = 0.35;
+const MAX_RADIANS: f32 = 0.35;
 /// The largest distance that a head moves between two renders, in metres.
-const MOST_METRES: f32 = 0.25;
+const MAX_METRES: f32 = 0.25;
 
 /// True if an eye is further from its former pose than a head moves between two renders.
 fn has_jumped(from: &View, to: &View) -> bool {
     let (from, to) = (&from.pose, &to.pose);
-    from.orientation.angle_between(to.orientation) > MOST_RADIANS
-        || from.position.distance(to.position) > MOST_METRES
+    from.orientation.angle_between(to.orientation) > MAX_RADIANS
+        || from.position.distance(to.position) > MAX_METRES
 }
 
 /// Renders with a guard band on all four sides, of one eye or of each, shown in any number of frames: each eye is
@@ -208,7 +208,7 @@ impl StereoMethod for HalfRate {
                 let targets = renderer.targets(Layout::Single)?;
                 self.renders.push(Render { targets, view: None, moving: None });
             }
-            self.pairs = renderer.nearest_depth() == NearestDepth::Carried;
+            self.pairs = renderer.nearest_depth() == DepthResolve::InColor;
             self.synthesis[0] = Some(Synthesizer::new(&self.gl, self.pairs, false)?);
         }
         // Vectors are floats; where a driver cannot draw any, what moves stays where it was rendered.

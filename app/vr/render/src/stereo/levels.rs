@@ -9,7 +9,7 @@ use super::auto::SelectedMethod;
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoFrame, StereoMethod};
 use super::options::{FramesBetween, Method, StereoOptions};
 use crate::view::{GpuScene, RenderSettings, Renderer};
-use yoro::eyes::{Eye, EyePair, Levels};
+use yoro::eyes::{Eye, EyePair, StereoViews};
 use yoro::opengl::{Composer, GlState, InsetImage, LevelImage, LevelImages};
 use yoro_gl::{Context, Destination, GlError};
 
@@ -31,9 +31,9 @@ impl From<&EyePair> for EyeLevels {
     }
 }
 
-impl From<&Levels> for EyeLevels {
-    fn from(levels: &Levels) -> EyeLevels {
-        let Levels { shown, wide, inset, .. } = levels;
+impl From<&StereoViews> for EyeLevels {
+    fn from(levels: &StereoViews) -> EyeLevels {
+        let StereoViews { shown, wide, inset, .. } = levels;
         EyeLevels { shown: *shown, wide: wide.eyes, inset: inset.map(|inset| inset.eyes) }
     }
 }
@@ -153,7 +153,7 @@ pub struct LevelFrame {
     wide: StereoFrame,
     inset: StereoFrame,
     /// The levels that the images fit; `None` before the first frame.
-    levels: Option<Levels>,
+    levels: Option<StereoViews>,
 }
 
 impl LevelFrame {
@@ -175,7 +175,7 @@ impl LevelFrame {
     ///
     /// # Errors
     /// As [`StereoFrame::resize`].
-    pub fn fit(&mut self, levels: &Levels) -> Result<LevelTargets<'static>, GlError> {
+    pub fn fit(&mut self, levels: &StereoViews) -> Result<LevelTargets<'static>, GlError> {
         self.levels = Some(*levels);
         self.wide.resize(levels.wide.eyes.size)?;
         if let Some(inset) = &levels.inset {
@@ -192,7 +192,7 @@ impl LevelFrame {
         &mut self,
         method: &mut SelectedMethod,
         (renderer, scene): (&mut Renderer, &GpuScene),
-        levels: &Levels,
+        levels: &StereoViews,
         to: &[Destination; 2],
     ) -> Result<(), StereoError> {
         let targets = self.fit(levels)?;
@@ -241,7 +241,7 @@ mod tests {
     use super::*;
 
     /// Both eyes composed of their levels.
-    fn composed(rig: &mut Rig, method: &mut SelectedMethod, levels: &Levels) -> [Vec<u8>; 2] {
+    fn composed(rig: &mut Rig, method: &mut SelectedMethod, levels: &StereoViews) -> [Vec<u8>; 2] {
         let gl = rig.gl();
         let mut frame = LevelFrame::new(&gl, false).unwrap();
         let shown = StereoFrame::new(&gl, levels.shown.size).unwrap();
@@ -258,7 +258,7 @@ mod tests {
     }
 
     /// Returns the pixels of an eye's image that its inset covers.
-    fn fovea(rgba: &[u8], levels: &Levels, eye: Eye) -> Vec<u8> {
+    fn fovea(rgba: &[u8], levels: &StereoViews, eye: Eye) -> Vec<u8> {
         let (shown, inset) = (&levels.shown, levels.inset.unwrap().eyes);
         let corner = |low: f32, inset: f32, extent: f32, pixels: u32| {
             ((inset - low) / extent * pixels as f32).round() as usize

@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 
 use super::tests::{Rig, local, moving_scene, pair};
 use super::*;
-use crate::view::{NearestDepth, RenderSettings};
+use crate::view::{DepthResolve, RenderSettings};
 use yoro::eyes::{DepthConvention, Eye, EyePair, Ndc, Pose};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Capabilities, Destination, Event, Filter, Format, Observer, RenderTarget};
@@ -122,9 +122,9 @@ impl Observer for Counted {
 /// with one depth a pixel and with two, by either eye's render and by both, whoever makes the frames between.
 #[test]
 fn frames_of_half_the_rate_compile_and_allocate_nothing() {
-    let limits: [(Limit, NearestDepth); 2] = [
-        (|capabilities| capabilities.tile_samples = false, NearestDepth::Read),
-        (|capabilities| capabilities.multisample_textures = false, NearestDepth::Carried),
+    let limits: [(Limit, DepthResolve); 2] = [
+        (|capabilities| capabilities.tile_samples = false, DepthResolve::Samples),
+        (|capabilities| capabilities.multisample_textures = false, DepthResolve::InColor),
     ];
     for (limit, way) in limits {
         let head = Headless::open_limited(Backend::Egl, limit).unwrap();

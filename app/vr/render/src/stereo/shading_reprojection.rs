@@ -9,7 +9,7 @@ use super::frame::Frame;
 use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
 use super::over::{Over, OverlaySurfaces};
 use crate::view::{GpuScene, Layout, Renderer, Reprojection, Targets};
-use yoro::eyes::{DisparityLaw, Eye, GuardBand};
+use yoro::eyes::{DisparityMap, Eye, GuardBand};
 
 /// Draws geometry twice, and shades once, and again where the dominant eye does not see a surface. Colours are taken
 /// before bloom, which runs for each eye.
@@ -50,7 +50,7 @@ impl StereoMethod for ShadingReprojection {
         // The law for the dominant eye's own image instead of one with both frusta: pixels outside of it are shaded.
         let views = pair.synthesis_views(GuardBand::None)?;
         let [left, bottom] = views.dominant_crop;
-        let law = DisparityLaw { offset: views.warp.law.offset + f64::from(left), ..views.warp.law };
+        let law = DisparityMap { offset: views.warp.law.offset + f64::from(left), ..views.warp.law };
         let row_offset = views.warp.row_offset + bottom as i32;
         let disparity_at_1_m = (pair.focal_length_pixels() * pair.ipd()).abs();
         let [eye, other] = [pair.dominant, pair.dominant.other()];

@@ -12,7 +12,7 @@ use super::near_fraction::NearFraction;
 use super::options::{FramesBetween, Pipeline, PipelineOptions, StereoOptions};
 use super::over::{Over, OverlaySurfaces};
 use super::pipeline::Synthesis;
-use crate::view::{DrawRequest, GpuScene, Layout, NearestDepth, Renderer, Selection, Targets};
+use crate::view::{DepthResolve, DrawRequest, GpuScene, Layout, Renderer, Selection, Targets};
 use yoro::eyes::{Eye, EyePair, GuardBand, SynthesisViews};
 use yoro::opengl::{Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
@@ -217,8 +217,8 @@ impl StereoMethod for Synthesized {
     fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
         let has_over = scene.has_transparent() || self.options.near_field.is_some();
         renderer.prepare_over(scene)?;
-        let pairs = renderer.nearest_depth() == NearestDepth::Carried;
-        let is_first = renderer.nearest_depth() == NearestDepth::First;
+        let pairs = renderer.nearest_depth() == DepthResolve::InColor;
+        let is_first = renderer.nearest_depth() == DepthResolve::SingleSample;
         let made = match &mut self.made {
             Some(made) => made,
             slot => slot.insert(Made {

@@ -10,7 +10,7 @@ pub enum Part {
     Color,
     /// Depth of one sample a pixel.
     Depth,
-    /// Several samples a pixel. They are stored only where shaders read them ([`super::NearestDepth::Read`]).
+    /// Several samples a pixel. They are stored only where shaders read them ([`super::DepthResolve::Samples`]).
     Samples,
 }
 

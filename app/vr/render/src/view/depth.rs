@@ -9,34 +9,34 @@ use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource,
 
 /// How the nearest depth of each pixel's samples gets into a texture. Averages of depth belong to no surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NearestDepth {
+pub enum DepthResolve {
     /// A pixel has one sample, whose depth buffer is the texture.
-    Single,
+    None,
     /// A second colour carries the reversed depth of two samples through the average (`include/carried.glsl`), so that no
     /// sample leaves the tile of a tile-based GPU. Views whose depth is not reversed get that of one sample.
-    Carried,
+    InColor,
     /// A pass reads all samples.
-    Read,
+    Samples,
     /// The driver copies the depth of one sample (OpenGL ES 3.0).
-    First,
+    SingleSample,
 }
 
-impl NearestDepth {
+impl DepthResolve {
     /// Returns the best way that a driver has for views with this many samples. Where outlines are drawn (`ink`), which
     /// compare samples with their neighbours, they are read if possible.
-    pub(super) fn best(gl: &Context, samples: u32, ink: bool) -> NearestDepth {
+    pub(super) fn best(gl: &Context, samples: u32, ink: bool) -> DepthResolve {
         let capabilities = gl.capabilities();
         let carries = capabilities.sample_masks && capabilities.float_render_targets && !ink;
         if samples == 1 {
-            NearestDepth::Single
+            DepthResolve::None
         } else if carries && capabilities.tile_samples {
-            NearestDepth::Carried
+            DepthResolve::InColor
         } else if capabilities.multisample_textures {
-            NearestDepth::Read
+            DepthResolve::Samples
         } else if carries {
-            NearestDepth::Carried
+            DepthResolve::InColor
         } else {
-            NearestDepth::First
+            DepthResolve::SingleSample
         }
     }
 }
@@ -50,7 +50,7 @@ pub struct DepthImage<'a> {
     pub origin: [u32; 2],
     /// The layer, if the texture is an array.
     pub layer: Option<u32>,
-    /// True if the texture holds the reversed depth of two samples in two channels ([`NearestDepth::Carried`]).
+    /// True if the texture holds the reversed depth of two samples in two channels ([`DepthResolve::InColor`]).
     pub is_pair: bool,
     /// The convention of the depth.
     pub convention: DepthConvention,

@@ -35,7 +35,7 @@ mod vectors_tests;
 pub use cluster::Selection;
 pub use declared::{PASSES, Part as TilePart, Pass};
 pub(crate) use depth::DepthProgram;
-pub use depth::{DepthCopy, DepthImage, NearestDepth};
+pub use depth::{DepthCopy, DepthImage, DepthResolve};
 pub(crate) use layout::{Layout, Seam};
 pub(crate) use lit::LitScene;
 pub(crate) use passes::Reprojection;

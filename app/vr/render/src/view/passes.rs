@@ -16,7 +16,7 @@ use super::scene::{FREE_UNIT, GpuScene};
 use super::shadow::ShadowMap;
 use super::targets::{Onto, Targets};
 use super::uniforms::{nearer, set_view, view_rays};
-use yoro::eyes::{DisparityLaw, Eye, View};
+use yoro::eyes::{DisparityMap, Eye, View};
 use yoro_gl::{DepthTest, Destination, GlError, Program, RasterState, RenderTarget, Texture};
 
 /// The light in the views of a frame.
@@ -50,7 +50,7 @@ pub(crate) struct Reprojection<'a> {
     /// Its nearest depth.
     pub depth: &'a Texture,
     /// Maps a column of the dominant eye to that of the second.
-    pub law: DisparityLaw,
+    pub law: DisparityMap,
     /// Row of the second eye minus that of the dominant.
     pub row_offset: i32,
     /// Inverse distance, in 1 / metres, whose disparity is half a pixel.

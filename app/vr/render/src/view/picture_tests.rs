@@ -143,7 +143,7 @@ fn drivers_differ_in_depth_at_edges_alone() {
             (way, picture, depths(head.gl(), &drawn.depth, &view))
         });
         let [(way, expected, nearest), others @ ..] = drawn;
-        assert_eq!(way, NearestDepth::Read);
+        assert_eq!(way, DepthResolve::Samples);
         for (way, picture, depth) in others {
             let off = |(a, b): (&[u8], &[u8])| (0..3).any(|i| a[i].abs_diff(b[i]) > 2);
             let off = expected.chunks(4).zip(picture.chunks(4)).filter(|pair| off(*pair)).count();
@@ -171,7 +171,7 @@ fn carried_depth_is_that_of_a_sample() {
     let view = straight_on(DepthConvention::Reversed);
     for samples in [2, 4].into_iter().filter(|n| head.gl().capabilities().samples.contains(n)) {
         let mut rig = Rig::new(head.gl(), scene.clone(), &with_samples(samples));
-        assert_eq!(rig.renderer.nearest_depth(), NearestDepth::Carried);
+        assert_eq!(rig.renderer.nearest_depth(), DepthResolve::InColor);
         let drawn = rig.draw(&view, Selection::All);
         assert!(drawn.depth.is_pair);
         for depth in depths(head.gl(), &drawn.depth, &view) {

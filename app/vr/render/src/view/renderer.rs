@@ -10,7 +10,7 @@ use std::rc::Rc;
 use super::bloom::{self, BloomPass, hdr_defines};
 use super::carry::CarryPass;
 use super::cluster::Selection;
-use super::depth::{DepthImage, NearestDepth};
+use super::depth::{DepthImage, DepthResolve};
 use super::geometry::{GeometryPass, Part, Variant};
 use super::layout::Layout;
 use super::lights::Lights;
@@ -36,7 +36,7 @@ pub struct Renderer {
     pub(super) shadow: Option<ShadowMap>,
     /// True if the style has outlines, which compare samples with their neighbours.
     pub(super) ink: bool,
-    pub(super) way: NearestDepth,
+    pub(super) way: DepthResolve,
     /// The defines of `include/shade.glsl`.
     shading: Vec<(&'static str, String)>,
     pub(super) geometry: Vec<GeometryPass>,
@@ -70,7 +70,7 @@ pub(super) struct Develop {
 
 /// The images of one view. They are made when the first view is rendered, and reused for the next.
 #[derive(Default)]
-pub struct ViewTargets(Option<(RenderSettings, NearestDepth, Targets)>);
+pub struct ViewTargets(Option<(RenderSettings, DepthResolve, Targets)>);
 
 /// A view that was rendered.
 #[derive(Clone, Copy)]
@@ -122,12 +122,12 @@ impl Renderer {
     pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Renderer, GlError> {
         settings.supported(gl.capabilities())?;
         let ink = scene.style == ShadingStyle::Anime;
-        let mut way = NearestDepth::best(gl, settings.msaa, ink);
+        let mut way = DepthResolve::best(gl, settings.msaa, ink);
         let mut carry = None;
-        if way == NearestDepth::Carried {
+        if way == DepthResolve::InColor {
             match CarryPass::new(gl, settings.msaa)? {
                 Some(pass) => carry = Some(pass),
-                None => way = NearestDepth::First,
+                None => way = DepthResolve::SingleSample,
             }
         }
         let has_shadow = scene.has_sun() && settings.shadow_map_size > 0;
@@ -201,7 +201,7 @@ impl Renderer {
     /// Returns the targets, or new ones if those were made for other settings.
     fn fitting<'a>(&self, made: &'a mut ViewTargets, scene: &GpuScene) -> Result<&'a mut Targets, GlError> {
         self.check_scene(scene)?;
-        let fits = |(settings, way, _): &(RenderSettings, NearestDepth, Targets)| {
+        let fits = |(settings, way, _): &(RenderSettings, DepthResolve, Targets)| {
             *settings == self.settings && *way == self.way
         };
         let fitting = match made.0.take().filter(fits) {
@@ -241,7 +241,7 @@ impl Renderer {
     }
 
     /// Returns how the nearest depth of views is had.
-    pub fn nearest_depth(&self) -> NearestDepth {
+    pub fn nearest_depth(&self) -> DepthResolve {
         self.way
     }
 
@@ -266,11 +266,11 @@ impl Renderer {
         let samples = if layer { 1 } else { self.settings.msaa };
         let plain = Variant { layout, ..Variant::plain(samples) };
         self.prepare_variant(scene, plain)?;
-        if self.way == NearestDepth::Carried && !layer {
+        if self.way == DepthResolve::InColor && !layer {
             self.prepare_variant(scene, Variant { carried: true, ..plain })?;
         }
-        let samples = if self.way == NearestDepth::Read && !layer { self.settings.msaa } else { 1 };
-        if self.ink || self.way == NearestDepth::Read {
+        let samples = if self.way == DepthResolve::Samples && !layer { self.settings.msaa } else { 1 };
+        if self.ink || self.way == DepthResolve::Samples {
             self.prepare_resolve(Resolve { samples, ink: self.ink, depth: samples > 1, layer })?;
         }
         if self.bloom.is_some() || layer {
@@ -283,7 +283,7 @@ impl Renderer {
     /// it with its depth.
     pub(crate) fn prepare_over(&mut self, scene: &GpuScene) -> Result<(), GlError> {
         self.prepare_variant(scene, Variant::plain(1))?;
-        let depth = Some(self.way == NearestDepth::Carried);
+        let depth = Some(self.way == DepthResolve::InColor);
         let plain = Develop { bloom: self.bloom.is_some(), ..Develop::default() };
         self.prepare_develop(plain)?;
         self.prepare_develop(Develop { depth, ..plain })
@@ -293,7 +293,7 @@ impl Renderer {
     /// outlines.
     pub(crate) fn prepare_load(&mut self) -> Result<(), GlError> {
         self.prepare_raw()?;
-        let carried = self.way == NearestDepth::Carried;
+        let carried = self.way == DepthResolve::InColor;
         for carries in [false, true].into_iter().take(1 + usize::from(carried)) {
             let carries = if carries { self.settings.msaa } else { 0 };
             self.prepare_develop(Develop { depth: Some(carried), carries, ..Develop::default() })?;
@@ -303,7 +303,7 @@ impl Renderer {
 
     /// Compiles the resolve of a view without outlines.
     pub(crate) fn prepare_raw(&mut self) -> Result<(), GlError> {
-        if self.way == NearestDepth::Read {
+        if self.way == DepthResolve::Samples {
             let samples = self.settings.msaa;
             self.prepare_resolve(Resolve { samples, ink: false, depth: true, layer: false })?;
         }
@@ -313,7 +313,7 @@ impl Renderer {
     /// Compiles the programs that take the dominant eye's colours.
     pub(crate) fn prepare_reprojected(&mut self, scene: &GpuScene) -> Result<(), GlError> {
         let plain = Variant::plain(self.settings.msaa);
-        if self.way == NearestDepth::Carried {
+        if self.way == DepthResolve::InColor {
             self.prepare_variant(scene, Variant { reprojected: true, carried: true, ..plain })?;
         }
         self.prepare_variant(scene, Variant { reprojected: true, ..plain })
@@ -327,7 +327,7 @@ impl Renderer {
         let mut shading = self.shading.clone();
         shading.extend((variant.samples > 1).then(|| ("MULTISAMPLE", String::new())));
         shading.extend(self.ink.then(|| ("INK", String::new())));
-        if variant.reprojected && self.way == NearestDepth::Carried {
+        if variant.reprojected && self.way == DepthResolve::InColor {
             shading.push(("DEPTH_PAIRS", String::new()));
         }
         self.geometry.push(GeometryPass::new(gl, scene, variant, &shading)?);
@@ -432,6 +432,6 @@ impl Renderer {
 
     /// Returns what a view needs whose depth is read or not.
     pub(super) fn needs(&self, depth: bool) -> Needs {
-        Needs { depth, samples: self.way == NearestDepth::Read && (depth || self.ink) }
+        Needs { depth, samples: self.way == DepthResolve::Samples && (depth || self.ink) }
     }
 }

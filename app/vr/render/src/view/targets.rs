@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::bloom::BloomTargets;
-use super::depth::{DepthImage, NearestDepth};
+use super::depth::{DepthImage, DepthResolve};
 use super::layout::Layout;
 use super::request::DrawRequest;
 use super::settings::{RenderSettings, SAMPLE_DEPTH};
@@ -42,7 +42,7 @@ pub struct Targets {
     gl: Rc<Context>,
     layout: Layout,
     samples: u32,
-    way: NearestDepth,
+    way: DepthResolve,
     /// Samples outside tiles, and whether they carry depth.
     multisample: Option<(MultisampleTarget, bool)>,
     /// Samples in tiles; `None` if the driver cannot keep them there.
@@ -77,7 +77,7 @@ impl Targets {
         gl: &Rc<Context>,
         layout: Layout,
         settings: &RenderSettings,
-        way: NearestDepth,
+        way: DepthResolve,
     ) -> Result<Targets, GlError> {
         let samples = if layout == Layout::Layered { 1 } else { settings.msaa };
         let size = layout.texture_size([1, 1]);
@@ -90,7 +90,7 @@ impl Targets {
             gl: gl.clone(),
             layout,
             samples,
-            way: if samples == 1 { NearestDepth::Single } else { way },
+            way: if samples == 1 { DepthResolve::None } else { way },
             multisample: None,
             tile: tile.transpose()?,
             onto: Onto::Resolved,
@@ -129,7 +129,7 @@ impl Targets {
             return Ok(false);
         }
         let is_reversed = view.depth.convention == DepthConvention::Reversed;
-        let carries = needs.depth && self.way == NearestDepth::Carried && is_reversed;
+        let carries = needs.depth && self.way == DepthResolve::InColor && is_reversed;
         self.carries = carries;
         if carries {
             if self.pair.is_none() {
@@ -143,7 +143,7 @@ impl Targets {
             return Ok(to.is_some_and(|to| to.texture.is_some()) && !carries);
         }
         self.onto = Onto::Samples;
-        let readable = self.way == NearestDepth::Read;
+        let readable = self.way == DepthResolve::Samples;
         match &mut self.multisample {
             Some((samples, carried)) if *carried == carries => samples.resize(whole)?,
             slot => {

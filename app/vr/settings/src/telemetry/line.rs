@@ -14,7 +14,7 @@ const REFRESH: &str = "FPS/";
 /// The key of the GPU time per frame, which is followed by the stages' times in parentheses.
 const GPU: &str = "App";
 /// The most characters of an optional name; longer names are cut.
-const MOST_CHARACTERS: usize = 64;
+const MAX_CHARACTERS: usize = 64;
 
 /// The GPU time of one stage.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,9 +123,9 @@ fn number<T: FromStr>(text: Option<&str>) -> Option<Option<T>> {
     text.map(str::parse).transpose().ok()
 }
 
-/// Returns the first [`MOST_CHARACTERS`] of a name.
+/// Returns the first [`MAX_CHARACTERS`] of a name.
 fn short(name: &str) -> &str {
-    name.char_indices().nth(MOST_CHARACTERS).map_or(name, |(end, _)| &name[..end])
+    name.char_indices().nth(MAX_CHARACTERS).map_or(name, |(end, _)| &name[..end])
 }
 
 /// A number that may be missing.

@@ -19,13 +19,13 @@ use yoro_gl::Context;
 /// The pause before the first new session. It doubles with each session that fails.
 const PAUSE: Duration = Duration::from_millis(500);
 /// Number of consecutive sessions that may fail; the next failure gives up the headset.
-const MOST_FAILURES: u32 = 3;
+const MAX_FAILURES: u32 = 3;
 /// A session that has shown this many frames counts as successful.
 const GOOD_FRAMES: u32 = 200;
 /// How long to wait for a runtime that was asked to end a session and does not.
 const EXIT_TIMEOUT: Duration = Duration::from_secs(3);
 /// Number of session states that are kept.
-const MOST_STATES: usize = 64;
+const MAX_STATES: usize = 64;
 
 /// The result of [`Headset::step`].
 #[derive(Debug)]
@@ -144,7 +144,7 @@ impl Headset {
         let Some(session) = &mut self.session else { return self.reopen(graphics) };
         let states = &mut self.states;
         let mut note = |state: xr::SessionState| {
-            if states.len() < MOST_STATES {
+            if states.len() < MAX_STATES {
                 states.push(format!("{state:?}"));
             }
         };
@@ -175,7 +175,7 @@ impl Headset {
             return Ok(Step::Ended);
         }
         self.failures += 1;
-        if self.failures > MOST_FAILURES {
+        if self.failures > MAX_FAILURES {
             return Err(XrError::GivenUp { sessions: self.failures, last: Box::new(error) });
         }
         let pause = PAUSE * 2u32.pow(self.failures - 1);

@@ -9,7 +9,7 @@ use crate::error::ViewerError;
 use crate::frame::{FrameReport, FrameTiming, SceneState};
 use crate::options::stereo_options;
 use yoro::choice::Cost;
-use yoro::eyes::{EyePair, Gaze, Levels};
+use yoro::eyes::{EyePair, Gaze, StereoViews};
 use yoro_lenses::{Content, Panel, Placement};
 use yoro_render::stereo::{DepthTarget, EyeLevels, EyeTarget, LevelTargets};
 use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
@@ -44,7 +44,7 @@ impl Viewer {
     /// Returns the levels in which the settings' foveation renders a pair of eyes; `None` if it is rendered as a whole: by
     /// [`FoveationLevel::Off`](yoro::eyes::FoveationLevel::Off), and where neither eye can be synthesized from the other.
     /// `axes` are the directions in the world along which the eyes look: [`EyePair::axes`] of the display's own eyes.
-    pub fn levels(&self, pair: &EyePair, axes: [Vec3; 2]) -> Option<Levels> {
+    pub fn levels(&self, pair: &EyePair, axes: [Vec3; 2]) -> Option<StereoViews> {
         let foveation = self.settings.foveation.unwrap_or_default().foveation()?;
         let guard = stereo_options(&self.settings, self.method.pipeline()).guard_band;
         pair.levels(Some(&foveation), Gaze::Axes(axes), guard).ok().filter(|l| l.inset.is_some())

@@ -44,7 +44,7 @@ use yoro_render::stereo::MethodChoice;
 use yoro_settings::{Ipd, Settings};
 
 /// Capacity reserved for the times of a frame's passes.
-const MOST_PASSES: usize = 64;
+const MAX_PASSES: usize = 64;
 
 /// Objects in the GL context, other than the scene and the method.
 struct Attached {
@@ -131,7 +131,7 @@ impl Viewer {
         self.detach();
         let (hud, board) = (Hud::new(&gl)?, Board::new(&gl)?);
         self.scene.reload();
-        self.attached = Some(Attached { hud, board, pass_times: Vec::with_capacity(MOST_PASSES), gl });
+        self.attached = Some(Attached { hud, board, pass_times: Vec::with_capacity(MAX_PASSES), gl });
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! The places of the levels in an eye's image.
 
-use super::{Eye, Level, Levels};
+use super::{Eye, StereoViews, ViewLayer};
 use crate::eyes::Frustum;
 
 /// The levels of one eye in its image, for the composer.
@@ -38,12 +38,13 @@ pub struct InsetPlace {
     pub source: Option<[f64; 3]>,
 }
 
-impl Levels {
+impl StereoViews {
     /// Returns how an eye is composed of its levels. The levels' images are the crop of the rendered image for the
-    /// dominant eye ([`Level::origin`]), and the synthesized ones for the other.
+    /// dominant eye ([`ViewLayer::origin`]), and the synthesized ones for the other.
     pub fn composition(&self, eye: Eye) -> Composition {
         let shown = &self.shown.frusta[eye.index()];
-        let place = |level: &Level| LevelPlace::new(shown, &level.eyes.frusta[eye.index()], level.eyes.size);
+        let place =
+            |level: &ViewLayer| LevelPlace::new(shown, &level.eyes.frusta[eye.index()], level.eyes.size);
         let inset = self.inset.as_ref().map(|level| InsetPlace {
             place: place(level),
             fade: self.fade,
@@ -53,7 +54,7 @@ impl Levels {
     }
 }
 
-impl Level {
+impl ViewLayer {
     /// Returns the lower left corner of an eye's own image: in the rendered image for the dominant eye, in the
     /// synthesized one for the other.
     pub fn origin(&self, eye: Eye) -> [u32; 2] {

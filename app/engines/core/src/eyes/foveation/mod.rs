@@ -112,7 +112,7 @@ pub enum Gaze {
 
 /// A level of a foveated pair of eyes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level {
+pub struct ViewLayer {
     /// The eyes with this level's frusta and size.
     pub eyes: EyePair,
     /// The view to render for this level, and how its pixels move to the other eye.
@@ -121,13 +121,13 @@ pub struct Level {
 
 /// The levels of a foveated pair of eyes ([`EyePair::levels`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Levels {
+pub struct StereoViews {
     /// The eyes as they are shown.
     pub shown: EyePair,
     /// The level that fills the eyes' images.
-    pub wide: Level,
+    pub wide: ViewLayer,
     /// The level where the eyes look; `None` if the wide one has all pixels.
-    pub inset: Option<Level>,
+    pub inset: Option<ViewLayer>,
     /// Columns and rows of the inset over which it fades into the wide view; 0 for a hard seam.
     pub fade: [f32; 2],
 }
@@ -158,10 +158,15 @@ impl EyePair {
         foveation: Option<&Foveation>,
         gaze: Gaze,
         guard: GuardBand,
-    ) -> Result<Levels, EyesError> {
+    ) -> Result<StereoViews, EyesError> {
         let whole = || {
             let views = self.synthesis_views(guard)?;
-            Ok(Levels { shown: *self, wide: Level { eyes: *self, views }, inset: None, fade: [0.0; 2] })
+            Ok(StereoViews {
+                shown: *self,
+                wide: ViewLayer { eyes: *self, views },
+                inset: None,
+                fade: [0.0; 2],
+            })
         };
         let Some(foveation) = foveation else { return whole() };
         foveation.check()?;
@@ -178,10 +183,10 @@ impl EyePair {
             ..*self
         };
         let beyond = f64::from((foveation.radius + foveation.fade).tan() - foveation.radius.tan());
-        Ok(Levels {
+        Ok(StereoViews {
             shown: *self,
-            wide: Level { eyes: wide, views: wide.synthesis_views(guard)? },
-            inset: Some(Level { eyes: inset, views: inset.inset_views(foveation.nearest)? }),
+            wide: ViewLayer { eyes: wide, views: wide.synthesis_views(guard)? },
+            inset: Some(ViewLayer { eyes: inset, views: inset.inset_views(foveation.nearest)? }),
             fade: self.density(self.dominant).map(|tangents| (beyond / tangents) as f32),
         })
     }

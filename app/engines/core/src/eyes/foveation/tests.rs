@@ -45,7 +45,7 @@ fn contains(frustum: &Frustum, [x, y]: [f64; 2]) -> bool {
 /// distance `nearest` or farther, is in the inset of that eye, and in the inset that is rendered.
 fn full_density_is_where_it_is_seen(
     eyes: &EyePair,
-    levels: &Levels,
+    levels: &StereoViews,
     gaze: [Vec3; 2],
     angle: f32,
     what: &str,
@@ -136,7 +136,7 @@ fn a_gaze_that_moves_changes_no_size() {
                 let gaze = Gaze::Direction(eyes.poses[0].orientation * direction);
                 eyes.levels(Some(&foveation), gaze, GuardBand::Distance(1.0)).unwrap()
             };
-            let sizes = |levels: &Levels| {
+            let sizes = |levels: &StereoViews| {
                 let inset = levels.inset.unwrap();
                 [levels.wide.views.source.size, inset.eyes.size, inset.views.source.size]
             };

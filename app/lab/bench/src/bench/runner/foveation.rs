@@ -10,7 +10,9 @@ use crate::bench::job::Job;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::{self, Views};
 use glam::Vec3;
-use yoro::eyes::{Composition, EyePair, EyesError, Foveation, FoveationLevel, Gaze, Levels, SynthesisViews};
+use yoro::eyes::{
+    Composition, EyePair, EyesError, Foveation, FoveationLevel, Gaze, StereoViews, SynthesisViews,
+};
 use yoro_files::interrupt;
 use yoro_gl::{Context, GlError};
 use yoro_metrics::{FlickerMeter, SsimWindow, psnr_where, ssim_where};
@@ -131,7 +133,7 @@ impl Way {
         self.method.render_levels(renderer, scene, &(&levels).into(), &to)
     }
 
-    fn levels(&self, pair: &EyePair) -> Result<Levels, EyesError> {
+    fn levels(&self, pair: &EyePair) -> Result<StereoViews, EyesError> {
         let axes = Gaze::Axes(pair.axes());
         pair.levels(self.level.foveation().as_ref(), axes, self.options.guard_band)
     }

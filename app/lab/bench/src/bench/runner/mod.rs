@@ -20,7 +20,7 @@ use indicatif::ProgressBar;
 
 use super::blank::BlankFinder;
 use super::contender::Contender;
-use super::job::{Displaced, Job, Measure, Source};
+use super::job::{Job, Measure, Source, TargetPose};
 use super::pictures::picture_folder;
 use super::record::{Measurement, Record, Results, RoundEnd, Unsupported, Writer};
 use super::scenes::LazyObject;
@@ -160,13 +160,13 @@ impl<'a> Runner<'a> {
             Measure::Frames { .. }
             | Measure::Foveation
             | Measure::Patchers
-            | Measure::Reprojection(Displaced::Canted)
+            | Measure::Reprojection(TargetPose::Canted)
             | Measure::Executed(_)
             | Measure::WholeFrames => Views::spread(job, prepared)?,
             // Only the start of the path has to show something; a later frame may look past the scene.
             Measure::Flicker
             | Measure::GuardBand
-            | Measure::Reprojection(Displaced::Late(..))
+            | Measure::Reprojection(TargetPose::Late(..))
             | Measure::HalfRate(..)
             | Measure::Stream(_) => Views::along_path(job, prepared, views::STEP)?.first(),
         };

@@ -8,7 +8,7 @@ use glam::Quat;
 use image::RgbImage;
 
 use super::{Runner, milliseconds};
-use crate::bench::job::{Displaced, Job};
+use crate::bench::job::{Job, TargetPose};
 use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::Views;
@@ -43,19 +43,19 @@ impl Runner<'_> {
     pub(super) fn reprojection(
         &mut self,
         job: &Job,
-        displaced: Displaced,
+        displaced: TargetPose,
         prepared: &mut PreparedScene,
     ) -> anyhow::Result<()> {
         self.bar.set_message(job.conditions.to_string());
         let mut reprojector = Reprojector::new(self.gl)?;
         let mut timer = Timer::new(self.gl, job)?;
         let (views, late) = match displaced {
-            Displaced::Late(motion, late) => {
+            TargetPose::Late(motion, late) => {
                 // The frames are spread over the motion, so that neighbours are not alike.
                 let all = Job { frames: job.frames * SPREAD + late, ..job.clone() };
                 (Views::of_motion(&all, prepared, motion)?, Some(late))
             }
-            Displaced::Canted => (Views::spread(job, prepared)?, None),
+            TargetPose::Canted => (Views::spread(job, prepared)?, None),
         };
         let mut measurements: Vec<Measurement> = Vec::new();
         for i in 0..job.frames.min(views.pairs.len()) {

@@ -15,7 +15,7 @@ const WIDEST: f32 = 1.55;
 /// A shorter quaternion has no meaningful direction: it consists of rounding errors.
 const SHORTEST: f32 = 1e-3;
 /// Canted eyes are rendered parallel only if their frusta grow by at most this factor on either axis.
-const MOST_GROWTH: f32 = 1.5;
+const MAX_GROWTH: f32 = 1.5;
 
 impl Session {
     /// Returns the eyes as the runtime predicts them, with their insets if it shows insets; `None` while their poses are
@@ -65,7 +65,7 @@ impl Session {
             _ => None,
         };
         let is_good = |eyes: &EyePair, native: &EyePair| {
-            growth(eyes, native) <= MOST_GROWTH && eyes.synthesis_views(GuardBand::None).is_ok()
+            growth(eyes, native) <= MAX_GROWTH && eyes.synthesis_views(GuardBand::None).is_ok()
         };
         // All levels or none: those of an eye have one pose.
         let wide = aligned(&native.wide).filter(|eyes| is_good(eyes, &native.wide));

@@ -14,7 +14,7 @@ use crate::openxr::error::{XrError, check};
 use crate::openxr::images::EyeImages;
 use crate::openxr::motion::{MotionInfo, ends};
 use crate::viewer::Viewer;
-use yoro::eyes::{Eye, EyePair, Levels, Pose};
+use yoro::eyes::{Eye, EyePair, Pose, StereoViews};
 use yoro_context::Graphics;
 use yoro_lenses::{Board, board_metres};
 use yoro_render::DepthCopy;
@@ -22,7 +22,7 @@ use yoro_render::stereo::{DepthTarget, EyeLevels, EyeTarget, LevelFrame, LevelTa
 use yoro_settings::Ipd;
 
 /// Both eyes and their insets.
-const MOST_VIEWS: usize = 4;
+const MAX_VIEWS: usize = 4;
 
 /// The layers of a frame.
 pub(super) struct Layers {
@@ -130,7 +130,7 @@ impl Session {
     }
 
     /// Returns the levels of which this program composes the eyes, if it does.
-    fn own_levels(&self, viewer: &Viewer, InScene { levels, axes, .. }: &InScene) -> Option<Levels> {
+    fn own_levels(&self, viewer: &Viewer, InScene { levels, axes, .. }: &InScene) -> Option<StereoViews> {
         // A runtime that shows insets composes them itself. Of one view, an API layer may need colour and depth of one size.
         let is_stereo = self.views == xr::ViewConfigurationType::PRIMARY_STEREO;
         if is_stereo { viewer.levels(&levels.wide, *axes) } else { None }
@@ -141,7 +141,7 @@ impl Session {
         &mut self,
         viewer: &mut Viewer,
         InScene { levels, place, .. }: &InScene,
-        own: Option<Levels>,
+        own: Option<StereoViews>,
         images: &LevelTargets<'static>,
     ) -> Result<Option<Drawn>, XrError> {
         let eyes = self.storage.begin(*images)?;
@@ -165,7 +165,7 @@ impl Session {
                     slot => slot.insert(LevelFrame::new(&self.gl, false)?),
                 };
                 let mut to = frame.fit(&own)?;
-                if is_alike(&own.wide.eyes, &levels.wide) {
+                if has_same_frusta(&own.wide.eyes, &levels.wide) {
                     to.wide = whole(to.wide, own.wide.eyes.size)?;
                 }
                 let rendered = viewer.render_levels(&(&own).into(), &to);
@@ -274,8 +274,8 @@ impl Session {
             let motion = motions.get(i).and_then(Option::as_ref);
             motion.map_or(std::ptr::null(), MotionInfo::header)
         };
-        let mut depths = [None; MOST_VIEWS];
-        for (i, (eye, (level, pair, size))) in submitted().enumerate().take(MOST_VIEWS) {
+        let mut depths = [None; MAX_VIEWS];
+        for (i, (eye, (level, pair, size))) in submitted().enumerate().take(MAX_VIEWS) {
             let depth = size.zip(level.depth.as_ref());
             depths[i] = depth.map(|(size, images)| depth_info(eye, pair, (images, size), after(i)));
         }
@@ -285,9 +285,9 @@ impl Session {
             pose: xr::Posef::IDENTITY,
             fov: xr::Fovf::default(),
             sub_image: self.wide.eyes.sub_image(Eye::Left, [0; 2]),
-        }; MOST_VIEWS];
+        }; MAX_VIEWS];
         let mut count = 0;
-        for (i, (eye, (level, pair, _))) in submitted().enumerate().take(MOST_VIEWS) {
+        for (i, (eye, (level, pair, _))) in submitted().enumerate().take(MAX_VIEWS) {
             let view = &mut views[i];
             view.next = depths[i].as_ref().map_or(after(i), |info| std::ptr::from_ref(info).cast());
             view.pose = from_pose(&pair.poses[eye.index()]);
@@ -336,7 +336,7 @@ fn frame_size(viewer: &Viewer, level: &RuntimeLevel) -> [u32; 2] {
 }
 
 /// True if a level's frusta are those of the eyes, to a hundredth of its pixels.
-fn is_alike(level: &EyePair, eyes: &EyePair) -> bool {
+fn has_same_frusta(level: &EyePair, eyes: &EyePair) -> bool {
     Eye::BOTH.iter().all(|eye| {
         let [own, shown] = [level, eyes].map(|pair| pair.frusta[eye.index()]);
         let pixel = (own.width() / level.size[0] as f32).min(own.height() / level.size[1] as f32);
