@@ -8,7 +8,7 @@ use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
 use yoro::opengl::{
-    AnyView, Composer, Extrapolator, Gather, GlState, GuessedDepth, Motion, Options, Outputs,
+    AnyView, Composer, Gather, GlState, GuessedDepth, Motion, Options, Outputs,
 };
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
@@ -68,9 +68,6 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     for depth in [false, true] {
         AnyView::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
         Motion::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
-    }
-    for depth_pairs in [false, true] {
-        Extrapolator::new(gl, &Options { depth_pairs, ..Options::default() })?;
     }
     Composer::new(gl, GlState::Leave, false)?;
     if variants == Variants::Every {

@@ -14,7 +14,7 @@ use yoro_gl::{
     ShaderSource, Shape, Texture,
 };
 use yoro_render::stereo::{
-    self, DepthTarget, FramesBetween, Method, MotionTarget, NearFieldPolicy, Pipeline, StereoFrame,
+    self, DepthTarget, Method, MotionTarget, NearFieldPolicy, Pipeline, StereoFrame,
     StereoOptions,
 };
 use yoro_render::{DepthCopy, DepthResolve, PASSES, PreparedScene, RenderSettings, TilePart};
@@ -88,9 +88,7 @@ fn frames() -> Vec<(Method, StereoOptions)> {
     let mut frames: Vec<_> = methods.filter_map(Contender::method).collect();
     let synthesis = StereoOptions { policy: None, ..StereoOptions::default() };
     for method in [Method::Conventional, Method::Synthesized] {
-        for frames_between in [FramesBetween::Method, FramesBetween::Runtime] {
-            frames.push((method, StereoOptions { frames_between, ..synthesis }));
-        }
+        frames.push((method, StereoOptions { motion_vectors: true, ..synthesis }));
     }
     frames.push((Method::Synthesized, StereoOptions { near_field: Some(3.0), ..synthesis }));
     frames.push((Method::Synthesized, StereoOptions { guard_band: GuardBand::Auto(0.1), ..synthesis }));
@@ -110,8 +108,7 @@ fn move_squares(scene: &mut Scene) {
     scene.motion = Motion { loops: vec![1.0], nodes, meshes, ..Motion::default() };
 }
 
-/// Returns what a method's third frame does, plainly, with depth for a compositor, and with motion vectors; and what it does
-/// to show that frame again.
+/// Returns what a method's third frame does, plainly, with depth for a compositor, and with motion vectors.
 fn record(
     gl: &Rc<Context>,
     recorder: &Recorder,
@@ -142,9 +139,6 @@ fn record(
         }
         recorder.start();
         method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).unwrap();
-        if options.frames_between == FramesBetween::Method {
-            assert!(method.show_again(&pair, &to, 0.5).unwrap());
-        }
         all.extend(pieces(&recorder.take(), &Assumed::default()));
     }
     all

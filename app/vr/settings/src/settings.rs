@@ -140,9 +140,8 @@ settings! {
     /// Switch to two real renders while most of the view is too near.
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),
-    /// yoro and conventional: render every second frame only. The headset's runtime makes the others of colour, depth and
-    /// motion vectors; where it does not, the viewer does, at the newest head pose. `method=auto` then means `yoro`, without
-    /// near field, the switch to two renders and the paper's pipeline.
+    /// Headsets whose runtime makes frames from colour, depth and motion vectors: with yoro and conventional, without near
+    /// field, render every second frame and leave the others to the runtime.
     "frame-rate" frame_rate: FrameRate = FrameRate::default(),
     /// hybrid: the far field starts where the eyes' disparity is this many pixels.
     "split-disparity" split_disparity: f32 = 1.0;

@@ -1,6 +1,7 @@
 //! The rate of renders with `frame-rate=auto`, where a runtime makes the frames between.
 
 use crate::adaptive::Load;
+use yoro_settings::{FrameRate, Settings};
 
 /// Seconds over which frames are counted.
 const WINDOW_NS: i64 = 2_000_000_000;
@@ -8,6 +9,14 @@ const WINDOW_NS: i64 = 2_000_000_000;
 const LATE: f32 = 0.1;
 /// The share of a refresh that a render may take, on the GPU, for every frame to be rendered again.
 const ROOM: f32 = 0.7;
+
+/// Logs that every frame is rendered although the settings ask for half of them, on a display without a runtime that makes
+/// the others.
+pub(crate) fn log_full_rate(settings: &Settings) {
+    if settings.frame_rate == FrameRate::Half {
+        log::warn!("frame-rate=half needs a headset whose runtime makes every second frame: all are rendered");
+    }
+}
 
 /// Leaves every second frame to the runtime while the full rate is missed.
 #[derive(Clone, Copy, Debug, Default)]

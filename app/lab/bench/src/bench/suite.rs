@@ -66,7 +66,7 @@ suites! {
     Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
-    HalfRate "half-rate" "Quality and time of the frame between two renders: by a runtime from both eyes' motion or from one eye's, by depth alone, and by yoro",
+    HalfRate "half-rate" "Quality and time of the frame that a runtime makes between two renders, from both eyes' motion or from one eye's",
     Foveation "foveation" "Frame time, shaded pixels and quality of eyes with all pixels only where they look, by two renders and by synthesis, at 60 and 90 degrees",
     Stream "stream" "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs, and with --frame whole frames on six, none of which need be here",

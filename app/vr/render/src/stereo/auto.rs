@@ -10,7 +10,7 @@ use web_time::Instant;
 
 use super::levels::{EyeLevels, LevelMethods, LevelTargets};
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod, Substituted};
-use super::options::{FramesBetween, Method, MethodChoice, StereoOptions};
+use super::options::{Method, MethodChoice, StereoOptions};
 use crate::view::{GpuScene, RenderSettings, Renderer};
 use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, StereoPath};
 use yoro::eyes::{EyePair, EyesError, GuardBand};
@@ -60,10 +60,6 @@ impl SelectedMethod {
         let named = |method| LevelMethods::new(gl, method, settings, options).map(Kind::Named);
         let kind = match choice {
             MethodChoice::Named(method) => named(method)?,
-            // Turns of two methods would need renders of both.
-            MethodChoice::Auto if options.frames_between == FramesBetween::Method => {
-                named(Method::Synthesized)?
-            }
             MethodChoice::Auto => Kind::Auto(Box::new(Auto::new(gl, settings, options)?)),
         };
         Ok(SelectedMethod {
@@ -117,13 +113,7 @@ impl SelectedMethod {
     fn both(&mut self) -> Result<&mut LevelMethods, GlError> {
         let made = match self.both.take() {
             Some(made) => made,
-            None => {
-                let mut options = self.options;
-                if options.frames_between == FramesBetween::Method {
-                    options.frames_between = FramesBetween::Nobody;
-                }
-                LevelMethods::new(&self.gl, Method::Conventional, &self.settings, &options)?
-            }
+            None => LevelMethods::new(&self.gl, Method::Conventional, &self.settings, &self.options)?,
         };
         Ok(self.both.insert(made))
     }
@@ -152,27 +142,6 @@ impl SelectedMethod {
         }
         self.both()?.render(renderer, scene, levels, to)
     }
-
-    /// Shows the last render of all levels again; see [`StereoMethod::show_again`].
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render_level`].
-    pub fn show_levels_again(
-        &mut self,
-        levels: &EyeLevels,
-        to: &LevelTargets,
-        ahead: f32,
-    ) -> Result<bool, StereoError> {
-        let is_unfit = |pair: &EyePair| unfit(self.method, pair).is_some();
-        if self.is_comparing || self.unfit.is_some() || levels.pairs().any(is_unfit) {
-            return Ok(false);
-        }
-        match &mut self.kind {
-            Kind::Named(methods) => methods.show_again(levels, to, ahead),
-            // It is not made for half the rate.
-            Kind::Auto(_) => Ok(false),
-        }
-    }
 }
 
 /// A pair of eyes is one level.
@@ -194,10 +163,6 @@ impl StereoMethod for SelectedMethod {
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         self.render_levels(renderer, scene, &(&level.eyes).into(), &to.into())
-    }
-
-    fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2], ahead: f32) -> Result<bool, StereoError> {
-        self.show_levels_again(&pair.into(), &to.into(), ahead)
     }
 
     fn report(&self) -> MethodReport {

@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod};
 use super::motion::write_rendered;
-use super::options::{FramesBetween, StereoOptions};
+use super::options::StereoOptions;
 use crate::view::{DepthImage, DepthResolve, GpuScene, Layout, Renderer, Targets, VectorPass};
 use yoro::eyes::Eye;
 use yoro_gl::GlError;
@@ -22,8 +22,7 @@ pub struct Conventional {
 impl Conventional {
     /// Makes the method without what depends on the renderer.
     pub(super) fn new(options: &StereoOptions) -> Conventional {
-        let has_vectors = options.frames_between == FramesBetween::Runtime;
-        Conventional { has_vectors, ..Conventional::default() }
+        Conventional { has_vectors: options.motion_vectors, ..Conventional::default() }
     }
 
     /// Renders both eyes, the dominant one last. Calls `rendered` after each that `reads_depth`, with its depth.

@@ -58,18 +58,13 @@ impl<'a> Frame<'a> {
 
     /// Writes an eye's depth, if its target has depth.
     pub(super) fn write_depth(&self, eye: Eye, from: &DepthImage) {
-        write_depth(from, self.to(eye), self.convention);
+        if let Some(to) = &self.to(eye).depth {
+            to.copy.run(from, &to.to, self.convention);
+        }
     }
 }
 
 /// Returns the same eyes with reversed depth, which half floats and samples can carry.
-pub(super) fn reversed(pair: &EyePair) -> EyePair {
+fn reversed(pair: &EyePair) -> EyePair {
     EyePair { depth: DepthRange { convention: DepthConvention::Reversed, ..pair.depth }, ..*pair }
-}
-
-/// Writes an eye's depth in a convention, if the target has depth.
-pub(super) fn write_depth(from: &DepthImage, to: &EyeTarget, convention: DepthConvention) {
-    if let Some(to) = &to.depth {
-        to.copy.run(from, &to.to, convention);
-    }
 }

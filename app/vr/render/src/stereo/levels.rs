@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use super::auto::SelectedMethod;
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoFrame, StereoMethod};
-use super::options::{FramesBetween, Method, StereoOptions};
+use super::options::{Method, StereoOptions};
 use crate::view::{GpuScene, RenderSettings, Renderer};
 use yoro::eyes::{Eye, EyePair, StereoViews};
 use yoro::opengl::{Composer, GlState, InsetImage, LevelImage, LevelImages};
@@ -85,11 +85,7 @@ impl LevelMethods {
     ) -> Result<LevelMethods, GlError> {
         let create = |options| super::create(gl, method, settings, options);
         // A runtime gets motion vectors of the wide level alone.
-        let frames_between = match options.frames_between {
-            FramesBetween::Runtime => FramesBetween::Nobody,
-            other => other,
-        };
-        let inset = StereoOptions { frames_between, ..*options };
+        let inset = StereoOptions { motion_vectors: false, ..*options };
         Ok(LevelMethods {
             wide: create(options)?,
             inset: options.inset.map(|_| create(&inset)).transpose()?,
@@ -127,22 +123,6 @@ impl LevelMethods {
             return Ok(());
         };
         inset.render_level(renderer, scene, &LevelEyes { eyes, shown, nearest: Some(self.nearest) }, to)
-    }
-
-    /// Shows the last render of all levels again; see [`StereoMethod::show_again`].
-    pub(super) fn show_again(
-        &mut self,
-        levels: &EyeLevels,
-        to: &LevelTargets,
-        ahead: f32,
-    ) -> Result<bool, StereoError> {
-        if !self.wide.show_again(&levels.wide, &to.wide, ahead)? {
-            return Ok(false);
-        }
-        match self.inset.as_mut().zip(levels.inset).zip(to.inset.as_ref()) {
-            Some(((inset, eyes), to)) => inset.show_again(&eyes, to, ahead),
-            None => Ok(true),
-        }
     }
 }
 

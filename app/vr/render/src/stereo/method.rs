@@ -233,21 +233,6 @@ pub trait StereoMethod {
         self.render_level(renderer, scene, &pair.into(), to)
     }
 
-    /// Shows the last render again at the eyes' current poses. What moves goes on by `ahead` times its step between the last
-    /// two renders, 0.5 for the frame between two. Returns false if the method cannot do that, or if the last render does
-    /// not reach far enough; the caller must then render a frame.
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render_to`].
-    fn show_again(
-        &mut self,
-        _pair: &EyePair,
-        _to: &[EyeTarget; 2],
-        _ahead: f32,
-    ) -> Result<bool, StereoError> {
-        Ok(false)
-    }
-
     /// Renders both eyes into a frame, which is resized to the pair's size.
     ///
     /// # Errors

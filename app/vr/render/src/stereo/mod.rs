@@ -5,7 +5,6 @@ mod border;
 mod conventional;
 mod frame;
 mod guard_band;
-mod half_rate;
 mod hybrid;
 mod levels;
 mod method;
@@ -35,7 +34,6 @@ use yoro_gl::{Context, GlError};
 
 pub use auto::{Auto, SelectedMethod, unfit};
 use conventional::Conventional;
-use half_rate::HalfRate;
 use hybrid::Hybrid;
 pub use levels::{EyeLevels, LevelFrame, LevelTargets};
 pub use method::{
@@ -45,7 +43,7 @@ pub use method::{
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
-pub use options::{FramesBetween, Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
+pub use options::{Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 pub use pipeline::Synthesis;
 use shading_reprojection::ShadingReprojection;
@@ -64,16 +62,13 @@ pub fn create(
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
     settings.supports(method, gl.capabilities())?;
-    let is_half = options.frames_between == FramesBetween::Method;
     Ok(match method {
-        Method::Conventional if is_half => Box::new(HalfRate::new(gl, options, true)?),
         Method::Conventional => Box::new(Conventional::new(options)),
         Method::Instanced => Box::new(SinglePass::instanced(gl)),
         Method::Multiview => Box::new(SinglePass::new(Layout::Layered)),
         Method::ShadingReprojection => Box::new(ShadingReprojection::default()),
         Method::Hybrid => Box::new(Hybrid::new(options.split_disparity)),
         Method::Mono => Box::new(Mono::default()),
-        Method::Synthesized if is_half => Box::new(HalfRate::new(gl, options, false)?),
         Method::Synthesized => Box::new(Synthesized::new(gl, options)?),
     })
 }

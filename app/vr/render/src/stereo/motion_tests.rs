@@ -52,7 +52,7 @@ fn vectors_of_both_eyes_are_those_of_two_renders() {
         (Eye::Right, DepthConvention::Reversed, Ndc::ZeroToOne),
     ] {
         let settings = local();
-        let options = StereoOptions { frames_between: FramesBetween::Runtime, ..StereoOptions::default() };
+        let options = StereoOptions { motion_vectors: true, ..StereoOptions::default() };
         let create = |method| create(gl, method, &settings, &options).unwrap();
         let mut rig = Rig::of(gl, &settings, moving_scene());
         let now = pair(dominant, convention);
@@ -119,7 +119,7 @@ impl Observer for Counted {
 }
 
 /// At half the rate, frames compile nothing that can be prepared, and allocate nothing once each kind of frame was shown:
-/// with one depth a pixel and with two, by either eye's render and by both, whoever makes the frames between.
+/// with one depth a pixel and with two, by one eye's render and by both.
 #[test]
 fn frames_of_half_the_rate_compile_and_allocate_nothing() {
     let limits: [(Limit, DepthResolve); 2] = [
@@ -140,13 +140,9 @@ fn frames_of_half_the_rate_compile_and_allocate_nothing() {
             former: eyes.view(Eye::Left),
             ndc: Ndc::ZeroToOne,
         };
-        let shown = StereoFrame::new(gl, eyes.size).unwrap();
-        for (method, frames_between) in [Method::Conventional, Method::Synthesized]
-            .into_iter()
-            .flat_map(|m| [FramesBetween::Method, FramesBetween::Runtime].map(|by| (m, by)))
-        {
-            let what = format!("{way:?}, {method:?}, {frames_between:?}");
-            let options = StereoOptions { frames_between, ..StereoOptions::default() };
+        for method in [Method::Conventional, Method::Synthesized] {
+            let what = format!("{way:?}, {method:?}");
+            let options = StereoOptions { motion_vectors: true, ..StereoOptions::default() };
             let mut subject = create(gl, method, &settings, &options).unwrap();
             let (renderer, scene) = rig.parts();
             subject.prepare(renderer, scene).unwrap();
@@ -155,16 +151,8 @@ fn frames_of_half_the_rate_compile_and_allocate_nothing() {
             let mut held = None;
             for i in 0..6 {
                 rig.set_time(0.12 + 0.01 * f64::from(i));
-                if frames_between == FramesBetween::Runtime {
-                    rig.render_with(subject.as_mut(), &eyes, |_, to| EyeTarget {
-                        motion: Some(motion),
-                        ..to
-                    });
-                    assert!(subject.report().has_motion, "{what}");
-                } else {
-                    rig.render(subject.as_mut(), &eyes);
-                    assert!(subject.show_again(&eyes, &shown.targets(), 0.5).unwrap(), "{what}");
-                }
+                rig.render_with(subject.as_mut(), &eyes, |_, to| EyeTarget { motion: Some(motion), ..to });
+                assert!(subject.report().has_motion, "{what}");
                 assert_eq!(made.get(), 0, "{what}, frame {i}");
                 let now = (gl.object_count(), gl.texture_bytes());
                 assert!(i < 2 || *held.get_or_insert(now) == now, "{what}, frame {i}");

@@ -9,7 +9,7 @@ use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMetho
 use super::motion::SynthesizedMotion;
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::NearFraction;
-use super::options::{FramesBetween, Pipeline, PipelineOptions, StereoOptions};
+use super::options::{Pipeline, PipelineOptions, StereoOptions};
 use super::over::{Over, OverlaySurfaces};
 use super::pipeline::Synthesis;
 use crate::view::{DepthResolve, DrawRequest, GpuScene, Layout, Renderer, Selection, Targets};
@@ -235,8 +235,7 @@ impl StereoMethod for Synthesized {
             }),
         };
         // With a near field, the source lacks what is near, and its vectors.
-        let has_vectors = self.options.frames_between == FramesBetween::Runtime;
-        if self.motion.is_none() && has_vectors && self.options.near_field.is_none() {
+        if self.motion.is_none() && self.options.motion_vectors && self.options.near_field.is_none() {
             self.motion = Some(SynthesizedMotion::new(&self.gl, pairs)?);
         }
         if let Some(auto) = &mut self.auto_guard_band {
