@@ -5,6 +5,7 @@ use super::paper::PaperOptions;
 use crate::view::RenderSettings;
 use yoro::eyes::GuardBand;
 use yoro_gl::{Capabilities, GlError};
+use yoro_settings::FrameRate;
 pub use yoro_settings::{Method, MethodChoice, Pipeline};
 
 impl RenderSettings {
@@ -53,9 +54,8 @@ pub struct StereoOptions {
     /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
     /// `f_px * IPD / split_disparity` metres.
     pub split_disparity: f32,
-    /// For frames that may have an inset ([`super::EyeLevels`]): the distance in metres from which on the synthesized eye's
-    /// is complete. `None` if no frame has one.
-    pub inset: Option<f32>,
+    /// The rate of renders, where the display's runtime makes the other frames.
+    pub frame_rate: FrameRate,
 }
 
 impl Default for StereoOptions {
@@ -67,7 +67,7 @@ impl Default for StereoOptions {
             policy: Some(NearFieldPolicy::default()),
             motion_vectors: false,
             split_disparity: 1.0,
-            inset: None,
+            frame_rate: FrameRate::Full,
         }
     }
 }
