@@ -126,24 +126,9 @@ pub struct MotionTarget {
     pub ndc: Ndc,
 }
 
-/// How much of its guard band a method with [`yoro::eyes::GuardBand::Auto`] drew in a frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GuardBandUse {
-    /// Columns that were drawn.
-    pub columns: u32,
-    /// Columns of the whole band.
-    pub most: u32,
-    /// Pixels at the other eye's border that were filled because their surfaces lie in the undrawn part of the band.
-    /// Estimated from the outermost drawn column.
-    pub undrawn: u32,
-}
-
 /// What a method says about a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MethodReport {
-    /// The use of the guard band two frames before the last one, the newest that is measured. `None` for methods and
-    /// settings that always draw the whole band, and before the first measurement.
-    pub guard_band: Option<GuardBandUse>,
     /// The reason why both eyes of the last frame were rendered instead of using the method, if they were.
     pub substituted: Option<Substituted>,
     /// True if the last frame's motion targets were filled. False if there were none, if the method fills none, or if the

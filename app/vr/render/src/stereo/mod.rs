@@ -1,10 +1,8 @@
 //! The stereo methods: ways to render the two eyes of a frame.
 
 mod auto;
-mod border;
 mod conventional;
 mod frame;
-mod guard_band;
 mod hybrid;
 mod levels;
 mod method;
@@ -37,7 +35,7 @@ use conventional::Conventional;
 use hybrid::Hybrid;
 pub use levels::{EyeLevels, LevelFrame, LevelTargets};
 pub use method::{
-    DepthTarget, EyeTarget, GuardBandUse, LevelEyes, MethodReport, MotionTarget, StereoError, StereoFrame,
+    DepthTarget, EyeTarget, LevelEyes, MethodReport, MotionTarget, StereoError, StereoFrame,
     StereoMethod, Substituted,
 };
 use mono::Mono;

@@ -4,7 +4,6 @@ use std::rc::Rc;
 
 use super::conventional::Conventional;
 use super::frame::Frame;
-use super::guard_band::AutoGuardBand;
 use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod, Substituted};
 use super::motion::SynthesizedMotion;
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
@@ -12,8 +11,8 @@ use super::near_fraction::NearFraction;
 use super::options::{Pipeline, PipelineOptions, StereoOptions};
 use super::over::{Over, OverlaySurfaces};
 use super::pipeline::Synthesis;
-use crate::view::{DrawRequest, GpuScene, Layout, NearestDepth, Renderer, Selection, Targets};
-use yoro::eyes::{Eye, EyePair, GuardBand, SynthesisViews};
+use crate::view::{GpuScene, Layout, NearestDepth, Renderer, Selection, Targets};
+use yoro::eyes::{Eye, EyePair};
 use yoro::opengl::{Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
 
@@ -25,7 +24,6 @@ pub struct Synthesized {
     gl: Rc<Context>,
     options: StereoOptions,
     made: Option<Made>,
-    auto_guard_band: Option<AutoGuardBand>,
     switch: Option<Switch>,
     /// Made if a runtime makes frames of motion vectors.
     motion: Option<SynthesizedMotion>,
@@ -94,12 +92,10 @@ impl Synthesized {
                 conventional: Conventional::new(options),
             })
         });
-        let is_auto = matches!(options.guard_band, GuardBand::Auto(_));
         Ok(Synthesized {
             gl: gl.clone(),
             options: *options,
             made: None,
-            auto_guard_band: is_auto.then(|| AutoGuardBand::new(gl)).transpose()?,
             switch: switch.transpose()?,
             motion: None,
             has_motion: false,
@@ -122,9 +118,6 @@ impl Synthesized {
         if *mode != FrameMode::BothRendered {
             return Ok(false);
         }
-        if let Some(auto) = &mut self.auto_guard_band {
-            auto.interrupt();
-        }
         let pair = &frame.pair;
         conventional.make(frame.renderer)?;
         conventional.render_eyes(
@@ -141,22 +134,6 @@ impl Synthesized {
         self.options.near_field.map_or(Selection::All, |distance| Selection::Farther { from, distance })
     }
 
-    /// Starts the measurements that later frames depend on: how wide the guard band must be, and how much of the view
-    /// is near.
-    fn measure(&mut self, frame: &Frame, views: &SynthesisViews) -> Result<(), GlError> {
-        let Some(Made { targets, .. }) = &self.made else { return Ok(()) };
-        let (pair, size) = (&frame.pair, views.source.size);
-        if let Some(auto) = &mut self.auto_guard_band {
-            auto.measure(&targets.depth(size, Eye::Left, [0, 0]), views)?;
-        }
-        if let Some(switch) = &mut self.switch {
-            // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
-            let depth = targets.depth(size, Eye::Left, views.dominant_crop);
-            switch.fraction.measure(&depth, pair.size, &pair.depth, switch.policy.distance)?;
-        }
-        Ok(())
-    }
-
     fn render_frame(&mut self, frame: &Frame) -> Result<(), StereoError> {
         let pair = &frame.pair;
         let renderer = frame.renderer;
@@ -170,13 +147,10 @@ impl Synthesized {
         let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
         let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
         let surfaces = OverlaySurfaces { near, transparent };
-        let request = DrawRequest {
-            selection: self.selection(pair),
-            columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(pair, &views, &frame.scene)),
-        };
+        let selection = self.selection(pair);
         let develops_first = self.develops_first();
         let Some(Made { targets, over, synthesizers, guess }) = &mut self.made else { return Ok(()) };
-        renderer.draw_source(targets, &frame.scene, &views.source, &request)?;
+        renderer.draw_source(targets, &frame.scene, &views.source, selection)?;
         let is_developed = develops_first && renderer.develops();
         if is_developed {
             let to = Destination::whole(targets.picture(views.source.size)?);
@@ -199,8 +173,11 @@ impl Synthesized {
             None => synthesis.synthesize(source, &views.warp, &to)?,
         }
         over.finish(frame, other, &surfaces);
-        self.measure(frame, &views)?;
-        let Some(Made { targets, over, .. }) = &mut self.made else { return Ok(()) };
+        if let Some(switch) = &mut self.switch {
+            // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
+            let depth = targets.depth(views.source.size, Eye::Left, views.dominant_crop);
+            switch.fraction.measure(&depth, pair.size, &pair.depth, switch.policy.distance)?;
+        }
         let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
         let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
         renderer.develop(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
@@ -238,9 +215,6 @@ impl StereoMethod for Synthesized {
         if self.motion.is_none() && self.options.motion_vectors && self.options.near_field.is_none() {
             self.motion = Some(SynthesizedMotion::new(&self.gl, pairs)?);
         }
-        if let Some(auto) = &mut self.auto_guard_band {
-            auto.prepare(pairs)?;
-        }
         if let Some(switch) = &mut self.switch {
             switch.fraction.prepare(pairs)?;
         }
@@ -253,7 +227,6 @@ impl StereoMethod for Synthesized {
     fn report(&self) -> MethodReport {
         let has_switched = |switch: &Switch| switch.mode == FrameMode::BothRendered;
         MethodReport {
-            guard_band: self.auto_guard_band.as_ref().and_then(AutoGuardBand::last),
             substituted: self.switch.as_ref().is_some_and(has_switched).then_some(Substituted::Near),
             has_motion: match self.switch.as_ref().filter(|switch| has_switched(switch)) {
                 Some(switch) => switch.conventional.has_motion(),

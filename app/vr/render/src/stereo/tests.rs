@@ -7,7 +7,7 @@ use glam::{Quat, Vec3};
 use super::*;
 use crate::fixture::quad;
 use crate::view::{DepthCopy, GpuScene, Renderer, Seam};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose};
 use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_assets::{Alpha, Material, Model, Motion, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
@@ -221,140 +221,6 @@ fn mono_shows_each_eye_its_own_part_of_the_view() {
             assert!(equal > 0.99, "{dominant:?} dominant, {eye:?}: {equal}");
         }
     }
-}
-
-/// Options with a band that covers surfaces from 20 cm on. The scene of posts needs a quarter of it.
-fn auto_band() -> StereoOptions {
-    StereoOptions { guard_band: GuardBand::Auto(0.2), ..StereoOptions::default() }
-}
-
-#[test]
-fn an_automatic_band_gives_the_picture_of_a_whole_one() {
-    let head = Headless::open(Backend::Egl).unwrap();
-    let gl = head.gl();
-    // Bloom, which reaches far, is on.
-    let one = RenderSettings { shadow_map_size: 256, msaa: 1, ..RenderSettings::default() };
-    let four = RenderSettings { msaa: 4, ..one.clone() };
-    for settings in [one, four] {
-        let mut rig = Rig::new(gl, &settings);
-        for dominant in Eye::BOTH {
-            let mut asymmetric = pair(dominant, DepthConvention::Reversed);
-            asymmetric.frusta[0].left *= 1.2;
-            asymmetric.frusta[1].right *= 1.2;
-            for pair in [pair(dominant, DepthConvention::Standard), asymmetric.row_aligned()] {
-                let mut method = create(gl, Method::Synthesized, &settings, &auto_band()).unwrap();
-                // The result of a frame arrives two frames later.
-                let [whole, _, part] = [(); 3].map(|()| rig.render(&mut *method, &pair));
-                let looked = method.report().guard_band.unwrap();
-                assert!(looked.columns == looked.most && looked.most > 30, "{looked:?}");
-                (0..2).for_each(|_| drop(rig.render(&mut *method, &pair)));
-                let used = method.report().guard_band.unwrap();
-                assert!(used.columns > 3 && used.columns < 20 && used.undrawn == 0, "{used:?}");
-                let [rendered, other] = [dominant, dominant.other()].map(Eye::index);
-                assert!(whole[rendered] == part[rendered], "{:?}, {dominant:?}", settings.msaa);
-                let share = equal_share(&whole[other], &part[other]);
-                assert!(share > 0.999, "{:?}, {dominant:?}: {share}", settings.msaa);
-            }
-        }
-    }
-    assert_eq!(gl.take_errors(), None);
-}
-
-#[test]
-fn an_automatic_band_keeps_up_with_a_moving_head() {
-    let head = Headless::open(Backend::Egl).unwrap();
-    let gl = head.gl();
-    let mut rig = Rig::new(gl, &local());
-    let whole = StereoOptions { guard_band: GuardBand::Distance(0.2), ..StereoOptions::default() };
-    for (dominant, sense) in [(Eye::Left, 1.0), (Eye::Left, -1.0), (Eye::Right, 1.0), (Eye::Right, -1.0)] {
-        let [mut whole, mut auto] =
-            [whole, auto_band()].map(|options| create(gl, Method::Synthesized, &local(), &options).unwrap());
-        let mut narrow = 0;
-        for frame in 0..20 {
-            // 0.4 degrees and 3 mm per frame.
-            let by = sense * frame as f32;
-            let pose = Pose {
-                position: Vec3::new(0.003 * by, 0.0, -0.002 * frame as f32),
-                orientation: Quat::from_rotation_y(0.007 * by),
-            };
-            let still = pair(dominant, DepthConvention::Standard);
-            let moved = EyePair::parallel(pose, still.frusta[0], still.ipd(), still.depth, SIZE, dominant);
-            let expected = rig.render(&mut *whole, &moved);
-            let images = rig.render(&mut *auto, &moved);
-            let [rendered, other] = [dominant, dominant.other()].map(Eye::index);
-            assert!(images[rendered] == expected[rendered], "{dominant:?}, frame {frame}");
-            let share = equal_share(&images[other], &expected[other]);
-            assert!(share > 0.999, "{dominant:?}, {sense}, frame {frame}: {share}");
-            if let Some(used) = auto.report().guard_band {
-                assert_eq!(used.undrawn, 0, "{dominant:?}, {sense}, frame {frame}");
-                narrow += u32::from(used.columns < used.most);
-            }
-        }
-        assert!(narrow > 12, "{dominant:?}, {sense}: {narrow} frames drew less than the whole band");
-    }
-    assert_eq!(gl.take_errors(), None);
-}
-
-#[test]
-fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
-    let head = Headless::open(Backend::Egl).unwrap();
-    let gl = head.gl();
-    let mut far = scene();
-    far.model.parts.truncate(2);
-    let mut near = far.clone();
-    // A board at 40 cm that crosses the left border of both eyes.
-    let corner = Vec3::new(-0.6, -0.5, -0.4);
-    quad(&mut near.model, 2, corner, Vec3::X * 0.5, Vec3::Y);
-    for msaa in [1, 4] {
-        let settings = RenderSettings { msaa, ..local() };
-        let mut rigs = [far.clone(), near.clone()].map(|scene| Rig::of(gl, &settings, scene));
-        let pair = pair(Eye::Right, DepthConvention::Standard);
-        let mut method = create(gl, Method::Synthesized, &settings, &auto_band()).unwrap();
-        for _ in 0..5 {
-            rigs[0].render(&mut *method, &pair);
-        }
-        let narrow = method.report().guard_band.unwrap();
-        assert!(narrow.columns <= 10 && narrow.undrawn == 0, "{narrow:?}");
-        let [[filled, _], _, [drawn, _]] = [(); 3].map(|()| rigs[1].render(&mut *method, &pair));
-        let used = method.report().guard_band.unwrap();
-        assert!(used.columns <= 10 && used.undrawn > 500, "{msaa}: {used:?}");
-        (0..2).for_each(|_| drop(rigs[1].render(&mut *method, &pair)));
-        let used = method.report().guard_band.unwrap();
-        assert!(used.columns >= 20 && used.undrawn == 0, "{msaa}: {used:?}");
-        // The fill continues the board to the border.
-        let share = equal_share(&filled, &drawn);
-        assert!(share > 0.95, "{msaa}: {share} of the picture as it should be");
-    }
-    assert_eq!(gl.take_errors(), None);
-}
-
-#[test]
-fn what_moves_at_the_border_is_drawn_at_once() {
-    let head = Headless::open(Backend::Egl).unwrap();
-    let gl = head.gl();
-    let mut scene = scene();
-    scene.model.parts.truncate(2);
-    // A board at 40 cm comes in at the left border within an eighth of a second, and stays a while.
-    quad(&mut scene.model, 2, Vec3::new(-1.6, -0.5, -0.4), Vec3::X * 0.5, Vec3::Y);
-    move_last_quad(&mut scene);
-    let mut rig = Rig::of(gl, &local(), scene);
-    let pair = pair(Eye::Right, DepthConvention::Standard);
-    let whole = StereoOptions { guard_band: GuardBand::Distance(0.2), ..StereoOptions::default() };
-    let [mut whole, mut auto] =
-        [whole, auto_band()].map(|options| create(gl, Method::Synthesized, &local(), &options).unwrap());
-    let mut narrow = 0;
-    for frame in 0..24 {
-        rig.renderer.set_time(&mut rig.scene, f64::from(frame) / 60.0).unwrap();
-        let [expected, images] = [&mut whole, &mut auto].map(|method| rig.render(&mut **method, &pair));
-        let share = equal_share(&images[0], &expected[0]);
-        assert!(share > 0.999 && images[1] == expected[1], "frame {frame}: {share}");
-        if let Some(used) = auto.report().guard_band {
-            assert_eq!(used.undrawn, 0, "frame {frame}");
-            narrow += u32::from(used.columns < used.most);
-        }
-    }
-    assert!(narrow > 2, "{narrow} frames drew less than the whole band");
-    assert_eq!(gl.take_errors(), None);
 }
 
 /// Settings with several samples in each pixel.
