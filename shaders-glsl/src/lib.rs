@@ -90,7 +90,6 @@ static APP: &[File] = embed![
     "render/sky.frag",
     "render/transparent.frag",
     "render/vectors.frag",
-    "stereo/border_profile.frag",
     "stereo/paper/patch.frag",
     "stereo/paper/reproject.frag",
     "stereo/paper/scatter.comp",

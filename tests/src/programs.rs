@@ -6,7 +6,6 @@ use std::rc::Rc;
 use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
-use yoro::eyes::GuardBand;
 use yoro::opengl::{
     AnyView, Composer, Gather, GlState, GuessedDepth, Motion, Options, Outputs,
 };
@@ -109,11 +108,7 @@ fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> any
     let mut renderer = Renderer::new(gl, settings, scene)?;
     for method in Method::ALL {
         if is_tested(method, settings, gl) {
-            let options = StereoOptions {
-                near_field: Some(1.0),
-                guard_band: GuardBand::AUTO,
-                ..StereoOptions::default()
-            };
+            let options = StereoOptions { near_field: Some(1.0), ..StereoOptions::default() };
             stereo::create(gl, method, settings, &options)?.prepare(&mut renderer, scene)?;
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
-use yoro::eyes::{Eye, EyeOptions, EyePair, GuardBand, Ndc};
+use yoro::eyes::{Eye, EyeOptions, EyePair, Ndc};
 use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_assets::{Motion, Scene, ShadingStyle};
 use yoro_bench::bench::Contender;
@@ -45,7 +45,6 @@ fn passes_do_what_they_declare() {
                 let settings = RenderSettings { msaa, shadow_map_size: 64, ..RenderSettings::default() };
                 let mut scene = scene::every_material(style);
                 scene::keep_plain_and_full(&mut scene);
-                // An automatic guard band is drawn whole where something moves.
                 if style == ShadingStyle::Anime {
                     move_squares(&mut scene);
                 }
@@ -91,7 +90,6 @@ fn frames() -> Vec<(Method, StereoOptions)> {
         frames.push((method, StereoOptions { motion_vectors: true, ..synthesis }));
     }
     frames.push((Method::Synthesized, StereoOptions { near_field: Some(3.0), ..synthesis }));
-    frames.push((Method::Synthesized, StereoOptions { guard_band: GuardBand::Auto(0.1), ..synthesis }));
     frames
         .push((Method::Synthesized, StereoOptions { policy: Some(NearFieldPolicy::default()), ..synthesis }));
     frames
@@ -209,10 +207,10 @@ fn a_record_says_what_was_drawn() {
         draw();
         assert_eq!(recorder.take(), [], "only what comes after the start");
         recorder.start();
-        gl.within_columns(Some([2, 5]), draw);
+        draw();
         let commands = recorder.take();
         let [Command::Draw(drawn)] = &commands[..] else { panic!("{commands:?}") };
-        assert_eq!((drawn.pass, drawn.area, drawn.shape), ("smooth", [3, 4], Shape::Screen));
+        assert_eq!((drawn.pass, drawn.area, drawn.shape), ("smooth", [8, 4], Shape::Screen));
         assert_eq!(drawn.program.files, ["screen.vert", "render/bloom_down.frag"]);
         let images = drawn.target.as_ref().unwrap();
         assert_eq!((images.color[0].size, images.depth.unwrap().format), ([8, 4], Format::Depth24));
@@ -220,7 +218,7 @@ fn a_record_says_what_was_drawn() {
         assert_eq!((name.as_str(), image.size), ("source", [16, 2]));
         assert!(!drawn.uses_depth && !drawn.blends);
         let counts = gl.capabilities().api == GlApi::Desktop;
-        assert_eq!(drawn.samples_passed, counts.then_some(3 * 4));
+        assert_eq!(drawn.samples_passed, counts.then_some(8 * 4));
         Ok(())
     });
     done.unwrap();

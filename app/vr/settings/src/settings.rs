@@ -128,10 +128,9 @@ settings! {
         range(|s| (1..=MAX_KERNEL_HEIGHT).contains(&s.kernel_height), "give 1 to 15 rows"),
     /// paper: whole source columns and one depth sample per ImBuffer pixel, as the text says.
     "strict" strict: bool = false,
-    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), `auto:METRES`, or complete from a distance in
-    /// metres (`1.0`).
+    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), or complete from a distance in metres (`1.0`).
     "guard-band" guard_band: Option<GuardBand> = None;
-        value_name("none|Npx|METRES|auto");
+        value_name("none|Npx|METRES");
         auto("1.0; paper: none"),
     /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
     "near-field" near_field: Option<f32> = None;

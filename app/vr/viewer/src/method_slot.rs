@@ -11,7 +11,7 @@ use yoro::choice::Cost;
 use yoro::eyes::Foveation;
 use yoro_gl::{Context, GlError};
 use yoro_render::stereo::{
-    Auto, EyeLevels, GuardBandUse, ImBufferSize, LevelTargets, Method, MethodChoice, Pipeline,
+    Auto, EyeLevels, ImBufferSize, LevelTargets, Method, MethodChoice, Pipeline,
     SelectedMethod, StereoMethod as _, StereoOptions, Substituted,
 };
 use yoro_settings::{FrameRate, Settings};
@@ -251,19 +251,19 @@ impl MethodSlot {
         self.made.as_ref().is_some_and(|made| made.report().has_motion)
     }
 
-    /// Renders both eyes of all levels. Returns the use of the guard band, if there is anything to say about it.
+    /// Renders both eyes of all levels.
     pub fn render(
         &mut self,
         shown: &mut Shown,
         levels: &EyeLevels,
         to: &LevelTargets,
-    ) -> Result<Option<GuardBandUse>, ViewerError> {
+    ) -> Result<(), ViewerError> {
         let made = self.made.as_mut().ok_or(ViewerError::NoContext)?;
         made.compare(self.is_comparing)?;
         made.render_levels(&mut shown.renderer, &shown.scene, levels, to)?;
         let report = made.report();
         self.tell(report.substituted);
-        Ok(report.guard_band)
+        Ok(())
     }
 
     /// Logs the reason for rendering both eyes, if it is another one than before.

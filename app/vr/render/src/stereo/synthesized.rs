@@ -8,7 +8,7 @@ use super::motion::SynthesizedMotion;
 use super::options::{Pipeline, PipelineOptions, StereoOptions};
 use super::over::{Over, OverlaySurfaces};
 use super::pipeline::Synthesis;
-use crate::view::{DepthResolve, DrawRequest, GpuScene, Layout, Renderer, Selection, Targets};
+use crate::view::{DepthResolve, GpuScene, Layout, Renderer, Selection, Targets};
 use yoro::eyes::{Eye, EyePair};
 use yoro::opengl::{Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
@@ -125,10 +125,10 @@ impl StereoMethod for Synthesized {
         let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
         let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
         let surfaces = OverlaySurfaces { near, transparent };
-        let request = DrawRequest { selection: self.selection(pair), columns: None };
+        let selection = self.selection(pair);
         let develops_first = self.develops_first();
         let Some(Made { targets, over, synthesizers, guess }) = &mut self.made else { return Ok(false) };
-        renderer.draw_source(targets, &frame.scene, &views.source, &request)?;
+        renderer.draw_source(targets, &frame.scene, &views.source, selection)?;
         let is_developed = develops_first && renderer.develops();
         if is_developed {
             let to = Destination::whole(targets.picture(views.source.size)?);

@@ -74,7 +74,6 @@ pub const PASSES: &[Pass] = &[
     pass("carry", &[], &[], &[]),
     pass("resolve", &["color_map", "depth_map"], &[], BOTH),
     pass("outlines", &["color_map", "depth_map"], &[], COLOR),
-    pass("repeat", &["copied"], &[], COLOR),
     pass("bloom", &["source"], COLOR, COLOR),
     pass("guessed depth", &["color_map", "depth_map"], &[], DEPTH),
     pass("moving surfaces", &["diffuse_map"], &[], COLOR),
@@ -88,6 +87,5 @@ pub const PASSES: &[Pass] = &[
     pass("develop", &["color_map", "depth_map", "bloom"], &[], BOTH),
     pass("copy", &["copied"], &[], COLOR),
     pass("depth copy", &["depth_map"], &[], DEPTH),
-    pass("border profile", &["depth_map"], &[], COLOR),
     pass("near fraction", &["depth_map"], &[], COLOR),
 ];

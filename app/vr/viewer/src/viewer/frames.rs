@@ -72,10 +72,7 @@ impl Viewer {
             return Ok(());
         };
         shown.move_on(self.now_ns)?;
-        if let Some(used) = self.method.render(shown, levels, to)? {
-            self.stats.guard_band(used);
-        }
-        Ok(())
+        self.method.render(shown, levels, to)
     }
 
     /// Says what the display's runtime does: whether it makes the frames between those that are rendered, from colour, depth

@@ -326,7 +326,7 @@ fn questions_are_asked_after_the_session_and_answered_by_head_or_keys() {
     }
     assert!(report.session_over && report.exit, "a marker left alone is an answer");
     let said: Vec<String> = run.viewer.viewer().ratings().iter().map(ToString::to_string).collect();
-    let line = "rating,v=1,participant=P03,trial=4,method=mono,pipeline=na,scene=prototype,question=";
+    let line = "rating,v=2,participant=P03,trial=4,method=mono,pipeline=na,scene=prototype,question=";
     assert_eq!(said, [format!("{line}image-quality,value=3.5"), format!("{line}comfort,value=1.0")]);
 }
 
