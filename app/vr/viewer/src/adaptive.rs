@@ -1,5 +1,7 @@
 //! A controller that finds the best quality at which the display's refresh rate holds. It has no clock and no GL.
 
+use yoro_render::stereo::FrameLoad;
+
 /// A quality to render with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
@@ -24,19 +26,6 @@ const LADDER: [Quality; 6] = [
     Quality { render_scale: 0.5, imbuffer: 4 },
 ];
 
-/// What one frame cost.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Load {
-    /// The time at which the frame was finished, in nanoseconds.
-    pub now_ns: i64,
-    /// Refresh rate of the display in Hz; 0 if unknown.
-    pub refresh_hz: f32,
-    /// Number of refreshes by which the frame was late.
-    pub late_refreshes: u32,
-    /// The frame's GPU time in milliseconds, if known.
-    pub gpu_ms: Option<f32>,
-}
-
 /// Chooses the quality frame by frame.
 ///
 /// Frames are judged in windows of half a second. The quality is lowered after a window with more than 5 % late frames
@@ -47,7 +36,6 @@ pub struct Load {
 #[derive(Clone, Debug)]
 pub struct Controller {
     level: usize,
-    headroom: Option<f32>,
     window: Window,
     good_windows: u32,
     needed_windows: u32,
@@ -83,7 +71,6 @@ impl Controller {
     pub fn new() -> Controller {
         Controller {
             level: 0,
-            headroom: None,
             window: Window::default(),
             good_windows: 0,
             needed_windows: Self::WINDOWS_UP,
@@ -97,11 +84,6 @@ impl Controller {
         LADDER[self.level]
     }
 
-    /// Sets the device's thermal headroom, if it is known.
-    pub fn set_thermal_headroom(&mut self, headroom: Option<f32>) {
-        self.headroom = headroom.filter(|h| h.is_finite());
-    }
-
     /// Forgets the frames so far, after a break or a change of the load that is not due to the quality.
     pub fn restart(&mut self) {
         self.window = Window::default();
@@ -109,36 +91,36 @@ impl Controller {
     }
 
     /// Records a frame and returns the quality for the next one.
-    pub fn frame(&mut self, load: &Load) -> Quality {
-        let begin = *self.window.begin_ns.get_or_insert(load.now_ns);
-        let elapsed = load.now_ns - begin;
+    pub fn frame(&mut self, load: &FrameLoad) -> Quality {
+        let begin = *self.window.begin_ns.get_or_insert(load.ended_ns);
+        let elapsed = load.ended_ns - begin;
         if !(0..Self::WINDOW_NS + Self::LONGEST_FRAME_NS).contains(&elapsed) {
             self.restart();
             return self.quality();
         }
         self.window.frames += 1;
         self.window.late += (load.late_refreshes > 0) as u32;
-        if let Some(ms) = load.gpu_ms {
-            self.window.gpu_ms += ms;
+        if let Some(gpu) = load.gpu {
+            self.window.gpu_ms += gpu.ms;
             self.window.timed += 1;
         }
         if elapsed >= Self::WINDOW_NS {
             self.judge(load);
-            self.window = Window { begin_ns: Some(load.now_ns), ..Window::default() };
+            self.window = Window { begin_ns: Some(load.ended_ns), ..Window::default() };
         }
         self.quality()
     }
 
-    fn judge(&mut self, load: &Load) {
+    fn judge(&mut self, load: &FrameLoad) {
         let window = self.window;
         let late_share = window.late as f32 / window.frames as f32;
         // The share of a refresh for which the GPU is busy.
         let gpu = (window.timed > 0 && load.refresh_hz > 0.0)
             .then(|| window.gpu_ms / window.timed as f32 * load.refresh_hz / 1e3);
         self.since_up = self.since_up.saturating_add(1);
-        let headroom = self.headroom.unwrap_or(0.0);
-        if headroom >= Self::HOT && load.now_ns >= self.cooling_until_ns {
-            self.cooling_until_ns = load.now_ns + Self::COOLING_NS;
+        let headroom = load.thermal_headroom.filter(|headroom| headroom.is_finite()).unwrap_or(0.0);
+        if headroom >= Self::HOT && load.ended_ns >= self.cooling_until_ns {
+            self.cooling_until_ns = load.ended_ns + Self::COOLING_NS;
             self.down();
         } else if late_share > Self::LATE_SHARE || gpu.is_some_and(|g| g > Self::FULL_LOAD) {
             if self.since_up < Self::TRIAL {
@@ -185,6 +167,18 @@ impl Default for Controller {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use yoro::choice::Cost;
+
+    fn load(ended_ns: i64, late_refreshes: u32, gpu_ms: Option<f32>) -> FrameLoad {
+        FrameLoad {
+            ended_ns,
+            refresh_hz: 60.0,
+            display_hz: 60.0,
+            late_refreshes,
+            gpu: gpu_ms.map(|ms| Cost { frames_ago: 0, ms }),
+            thermal_headroom: None,
+        }
+    }
 
     /// A device whose GPU needs `full_ms` at full quality, on a display of 60 Hz.
     struct Device {
@@ -192,12 +186,13 @@ mod tests {
         now_ns: i64,
         full_ms: f32,
         timer_queries: bool,
+        headroom: Option<f32>,
         changes: usize,
     }
 
     impl Device {
         fn new(full_ms: f32, timer_queries: bool) -> Device {
-            Device { controller: Controller::new(), now_ns: 0, full_ms, timer_queries, changes: 0 }
+            Device { controller: Controller::new(), now_ns: 0, full_ms, timer_queries, headroom: None, changes: 0 }
         }
 
         fn run(&mut self, seconds: f32) -> f32 {
@@ -207,12 +202,9 @@ mod tests {
                 let gpu_ms = self.full_ms * before.render_scale * before.render_scale;
                 let late_refreshes = (gpu_ms / (1e3 / 60.0)).floor() as u32;
                 self.now_ns += (1 + late_refreshes as i64) * 16_666_667;
-                let load = Load {
-                    now_ns: self.now_ns,
-                    refresh_hz: 60.0,
-                    late_refreshes,
-                    gpu_ms: self.timer_queries.then_some(gpu_ms),
-                };
+                let gpu_ms = self.timer_queries.then_some(gpu_ms);
+                let load =
+                    FrameLoad { thermal_headroom: self.headroom, ..load(self.now_ns, late_refreshes, gpu_ms) };
                 self.changes += (self.controller.frame(&load) != before) as usize;
             }
             self.controller.quality().render_scale
@@ -263,12 +255,12 @@ mod tests {
     #[test]
     fn heat_lowers_quality_slowly_and_keeps_it_low() {
         let mut device = Device::new(6.0, true);
-        device.controller.set_thermal_headroom(Some(0.97));
+        device.headroom = Some(0.97);
         assert_eq!(device.run(5.0), 0.9);
         assert_eq!(device.run(10.0), 0.8);
-        device.controller.set_thermal_headroom(Some(0.9));
+        device.headroom = Some(0.9);
         assert_eq!(device.run(30.0), 0.8);
-        device.controller.set_thermal_headroom(Some(f32::NAN));
+        device.headroom = Some(f32::NAN);
         assert_eq!(device.run(30.0), 1.0);
     }
 
@@ -276,12 +268,7 @@ mod tests {
     fn a_single_late_frame_changes_nothing() {
         let mut device = Device::new(9.0, true);
         device.run(0.6);
-        let late = Load {
-            now_ns: device.now_ns + 33_000_000,
-            refresh_hz: 60.0,
-            late_refreshes: 1,
-            gpu_ms: Some(9.0),
-        };
+        let late = load(device.now_ns + 33_000_000, 1, Some(9.0));
         assert_eq!(device.controller.frame(&late), Quality::FULL);
         device.run(2.0);
         assert_eq!(device.controller.quality(), Quality::FULL);
@@ -292,7 +279,7 @@ mod tests {
         let mut device = Device::new(9.0, false);
         device.run(1.0);
         device.now_ns += 60_000_000_000;
-        let load = Load { now_ns: device.now_ns, refresh_hz: 60.0, late_refreshes: 3600, gpu_ms: None };
+        let load = load(device.now_ns, 3600, None);
         assert_eq!(device.controller.frame(&load), Quality::FULL);
     }
 }

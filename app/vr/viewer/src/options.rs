@@ -38,8 +38,8 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
         policy: settings.switch.then(NearFieldPolicy::default),
         // A display whose runtime makes frames asks for them.
         motion_vectors: false,
+        frame_rate: settings.frame_rate,
         split_disparity: settings.split_disparity,
-        inset: settings.foveation.unwrap_or_default().foveation().map(|foveation| foveation.nearest),
     }
 }
 
@@ -61,7 +61,7 @@ mod tests {
                 "near-field=1",
                 "switch=false",
                 "split-disparity=2.5",
-                "foveation=low",
+                "frame-rate=half",
             ],
         );
         let [changed, default] = [changed.unwrap(), Settings::default()]

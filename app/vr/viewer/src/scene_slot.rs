@@ -10,12 +10,11 @@ use crate::loading::{Loader, SceneSource};
 use yoro::eyes::Pose;
 use yoro_assets::{Scene, Viewpoint};
 use yoro_gl::{Context, GlError};
-use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_render::{PreparedScene, RenderSettings};
 
 /// A scene on the GPU, and its renderer.
 pub(crate) struct Shown {
-    pub scene: GpuScene,
-    pub renderer: Renderer,
+    pub prepared: PreparedScene,
     /// Animation time in seconds since the scene was first shown.
     seconds: f64,
     /// The time of the previous frame in nanoseconds; `None` after a pause.
@@ -25,15 +24,14 @@ pub(crate) struct Shown {
 impl Shown {
     /// Uploads a scene and creates its renderer.
     pub fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> Result<Shown, GlError> {
-        let scene = GpuScene::upload(gl, scene)?;
-        Ok(Shown { renderer: Renderer::new(gl, settings, &scene)?, scene, seconds: 0.0, last_ns: None })
+        Ok(Shown { prepared: PreparedScene::new(gl, scene, settings)?, seconds: 0.0, last_ns: None })
     }
 
     /// Advances the animation to a frame at this time.
     pub fn move_on(&mut self, now_ns: i64) -> Result<(), GlError> {
         let past_ns = self.last_ns.replace(now_ns).map_or(0, |last_ns| (now_ns - last_ns).max(0));
         self.seconds += past_ns as f64 * 1e-9;
-        self.renderer.set_time(&mut self.scene, self.seconds)
+        self.prepared.set_time(self.seconds)
     }
 
     /// Stops the animation until the next frame.

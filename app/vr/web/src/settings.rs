@@ -6,9 +6,7 @@ use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, FoveationLevel, Gaze, Pose, StereoViews};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_render::RenderSettings;
-use yoro_render::stereo::{
-    self, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions,
-};
+use yoro_render::stereo::{Method, MethodChoice, StereoOptions, StereoSession};
 use yoro_settings::Ipd;
 
 /// The way in which two images are shown on a flat screen.
@@ -108,15 +106,13 @@ impl Settings {
     /// Returns the methods' options. They differ from the desktop's in one: frames are never rendered twice because
     /// much of the view is near, since detecting that would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
-        let inset = self.foveation.foveation().map(|foveation| foveation.nearest);
-        StereoOptions { policy: None, inset, ..StereoOptions::default() }
+        StereoOptions { policy: None, ..StereoOptions::default() }
     }
 
-    /// Returns the levels of a headset's eyes; `None` if they are rendered as a whole.
-    pub fn levels(&self, pair: &EyePair) -> Option<StereoViews> {
-        let foveation = self.foveation.foveation()?;
-        let (gaze, guard) = (Gaze::Axes(pair.axes()), self.stereo_options().guard_band);
-        pair.levels(Some(&foveation), gaze, guard).ok().filter(|levels| levels.inset.is_some())
+    /// Returns what a headset's eyes see with the foveation.
+    pub fn stereo_views(&self, pair: &EyePair) -> StereoViews {
+        let views = pair.stereo_views(self.foveation.foveation().as_ref(), Gaze::Axes(pair.axes()));
+        views.unwrap_or_else(|_| (*pair).into())
     }
 
     /// Returns the method in use, or the automatic choice between two. Displays that compare with a real render never
@@ -144,20 +140,12 @@ impl Settings {
         })
     }
 
-    /// Compiles a method for these choices.
+    /// Makes a session of a method, or of both of the automatic choice, with these choices.
     ///
     /// # Errors
-    /// Those of [`stereo::create`].
-    pub fn create(&self, gl: &Rc<Context>, method: Method) -> Result<Box<dyn StereoMethod>, GlError> {
-        stereo::create(gl, method, &self.render_settings(), &self.stereo_options())
-    }
-
-    /// Compiles the method in use, or both methods of the automatic choice.
-    ///
-    /// # Errors
-    /// Those of [`stereo::create`].
-    pub fn create_chosen(&self, gl: &Rc<Context>) -> Result<SelectedMethod, GlError> {
-        SelectedMethod::new(gl, self.choice(), &self.render_settings(), &self.stereo_options())
+    /// Those of [`StereoSession::new`].
+    pub fn create_session(&self, gl: &Rc<Context>, choice: MethodChoice) -> Result<StereoSession, GlError> {
+        StereoSession::new(gl, choice, &self.render_settings(), &self.stereo_options())
     }
 
     /// Returns both eyes of a head, with images of `size` pixels.

@@ -9,14 +9,16 @@ use yoro_gl::{Context, Destination, GlError};
 
 /// The targets of a frame by layer and [`Eye::index`]. Each has the size of its layer.
 #[derive(Clone, Copy)]
-pub(super) struct LayerTargets<'a> {
-    pub(super) wide: [EyeTarget<'a>; 2],
-    pub(super) inset: Option<[EyeTarget<'a>; 2]>,
+pub struct LayerTargets<'a> {
+    /// Targets of the wide layer.
+    pub wide: [EyeTarget<'a>; 2],
+    /// Targets of the inset, if there is one.
+    pub inset: Option<[EyeTarget<'a>; 2]>,
 }
 
 impl<'a> LayerTargets<'a> {
     /// Returns the targets of each layer, the wide one first.
-    pub(super) fn layers(&self) -> impl Iterator<Item = &[EyeTarget<'a>; 2]> {
+    pub fn layers(&self) -> impl Iterator<Item = &[EyeTarget<'a>; 2]> {
         [Some(&self.wide), self.inset.as_ref()].into_iter().flatten()
     }
 }

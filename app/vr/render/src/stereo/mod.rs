@@ -37,7 +37,7 @@ pub use auto::Auto;
 use conventional::Conventional;
 pub use fallback::{FallbackReason, alignment_error};
 use hybrid::Hybrid;
-pub use images::StereoImages;
+pub use images::{LayerTargets, StereoImages};
 use method::StereoMethod;
 pub use method::{DepthTarget, EyeTarget, MotionTarget, StereoError, StereoFrame};
 use mono::Mono;

@@ -24,12 +24,7 @@ pub enum FrameTargets<'a> {
     /// otherwise it is cleared to the farthest depth. Motion vectors are the wide layer's.
     Eyes([EyeTarget<'a>; 2]),
     /// Each layer into targets of its own, for a runtime that composes the eyes.
-    Layers {
-        /// Targets of the wide layer.
-        wide: [EyeTarget<'a>; 2],
-        /// Targets of the inset.
-        inset: [EyeTarget<'a>; 2],
-    },
+    Layers(LayerTargets<'a>),
     /// Images for a last pass that reads, and composes, the finished eyes. They are fitted to the frame.
     Images(&'a mut StereoImages),
 }
@@ -155,9 +150,9 @@ impl StereoSession {
         self.two_renders().map(drop)
     }
 
-    /// Starts or ends a comparison, during which both eyes are rendered.
-    pub fn compare(&mut self, is_comparing: bool) {
-        self.is_comparing = is_comparing;
+    /// Starts or ends a comparison, during which both eyes are rendered. Returns true if this is a change.
+    pub fn compare(&mut self, is_comparing: bool) -> bool {
+        std::mem::replace(&mut self.is_comparing, is_comparing) != is_comparing
     }
 
     /// Makes an automatic choice measure again, after a change of the viewpoint or the resolution.
@@ -190,10 +185,7 @@ impl StereoSession {
         }
         match targets {
             FrameTargets::Images(images) => self.render(scene, views, &images.fit(views)?),
-            FrameTargets::Layers { wide, inset } => {
-                let inset = views.inset.map(|_| inset);
-                self.render(scene, views, &LayerTargets { wide, inset })
-            }
+            FrameTargets::Layers(layers) => self.render(scene, views, &layers),
             FrameTargets::Eyes(to) if views.inset.is_none() => {
                 self.render(scene, views, &LayerTargets { wide: to, inset: None })
             }

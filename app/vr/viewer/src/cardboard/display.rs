@@ -10,7 +10,6 @@ use super::timewarp::PositionalTimewarp;
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
 use crate::frame::{FrameReport, FrameTiming};
-use crate::rate::log_full_rate;
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, Eye, EyePair, FoveationLevel, Pose};
 use yoro_gl::{Context, Destination, GlError};
@@ -18,11 +17,15 @@ use yoro_lenses::LensPass;
 use yoro_lenses::ViewerParams;
 use yoro_lenses::{HeadTracker, MotionSample, neck_offset};
 use yoro_lenses::{Optics, Screen, flat_hit};
-use yoro_render::stereo::{LevelFrame, StereoFrame};
-use yoro_settings::{Ipd, Settings, Timewarp};
+use yoro_render::stereo::{FrameTargets, StereoImages};
+use yoro_settings::{FrameRate, Ipd, Settings, Timewarp};
 
 /// Pixels per inch assumed for a screen that does not report any.
 const USUAL_DPI: f32 = 400.0;
+
+/// What is logged for `frame-rate=half` where no runtime makes the other frames.
+pub(crate) const FULL_RATE: &str =
+    "frame-rate=half needs a headset whose runtime makes every second frame: all are rendered";
 
 /// A fixed head pose, used instead of the one that the sensors measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,9 +39,7 @@ pub struct HeldHead {
 /// Objects that live in the GL context.
 struct Attached {
     gl: Rc<Context>,
-    frame: StereoFrame,
-    /// The images in place of `frame` while the settings ask for levels.
-    levels: Option<LevelFrame>,
+    images: StereoImages,
     lens: LensPass,
     /// A fence after the last frame that was presented.
     presented: Fence,
@@ -46,8 +47,6 @@ struct Attached {
     timewarp: Option<PositionalTimewarp>,
     /// The head's rotation to the world, and the eyes, of the last frame that was rendered.
     rendered: Option<(Quat, EyePair)>,
-    /// True if that frame is in levels.
-    is_in_levels: bool,
 }
 
 /// The application on the screen of a phone, behind the lenses of a Cardboard-compatible viewer.
@@ -73,7 +72,9 @@ impl Cardboard {
     /// [`ViewerError::Params`] and [`ViewerError::NoScene`] for mistakes in the settings.
     pub fn new(settings: Settings, screen: Screen, folders: &[PathBuf]) -> Result<Cardboard, ViewerError> {
         let params = ViewerParams::find_in(&settings.viewer, folders)?;
-        log_full_rate(&settings);
+        if settings.frame_rate == FrameRate::Half {
+            log::warn!("{FULL_RATE}");
+        }
         let mut viewer = Viewer::new(settings, folders)?;
         viewer.set_native_ipd(Ipd::nearest(params.inter_lens));
         let metres = metres(viewer.settings(), &screen);
@@ -106,13 +107,11 @@ impl Cardboard {
     pub fn attach(&mut self, gl: Rc<Context>) -> Result<(), ViewerError> {
         self.viewer.attach(gl.clone())?;
         self.attached = Some(Attached {
-            frame: StereoFrame::new(&gl, [1, 1])?,
-            levels: self.level_frame(&gl)?,
+            images: StereoImages::new(&gl)?,
             timewarp: self.positional_timewarp(&gl)?,
             lens: self.lens_pass(&gl)?,
             presented: Fence::new(&gl),
             rendered: None,
-            is_in_levels: false,
             gl,
         });
         Ok(())
@@ -152,19 +151,15 @@ impl Cardboard {
         is_wanted.then(|| PositionalTimewarp::new(gl, self.eye_size())).transpose()
     }
 
-    /// True if frames are in levels. Positional timewarp moves whole eyes.
-    fn has_levels(&self) -> bool {
+    /// True if frames may have an inset. Positional timewarp moves whole eyes.
+    fn is_foveated(&self) -> bool {
         let settings = self.viewer.settings();
         settings.foveation.unwrap_or_default() != FoveationLevel::Off
             && settings.timewarp != Timewarp::Position
     }
 
-    fn level_frame(&self, gl: &Rc<Context>) -> Result<Option<LevelFrame>, GlError> {
-        self.has_levels().then(|| LevelFrame::new(gl, false)).transpose()
-    }
-
     fn lens_pass(&self, gl: &Rc<Context>) -> Result<LensPass, GlError> {
-        LensPass::new(gl, &self.optics, self.viewer.settings().chromatic, self.has_levels())
+        LensPass::new(gl, &self.optics, self.viewer.settings().chromatic, self.is_foveated())
     }
 
     /// Recomputes the lenses.
@@ -200,14 +195,11 @@ impl Cardboard {
             Some(ViewerParams::find_in(&settings.viewer, folders)?)
         };
         let timewarp_differs = settings.timewarp != before.timewarp;
-        let had_levels = self.has_levels();
+        let was_foveated = self.is_foveated();
         change(&mut self.viewer, settings)?;
-        let levels_differ = self.has_levels() != had_levels;
-        if levels_differ && let Some(gl) = self.attached.as_ref().map(|attached| attached.gl.clone()) {
-            let levels = self.level_frame(&gl)?;
-            if let Some(attached) = &mut self.attached {
-                (attached.levels, attached.rendered) = (levels, None);
-            }
+        let layers_differ = self.is_foveated() != was_foveated;
+        if let Some(attached) = self.attached.as_mut().filter(|_| layers_differ) {
+            attached.rendered = None;
         }
         if timewarp_differs && let Some(gl) = self.attached.as_ref().map(|attached| attached.gl.clone()) {
             let timewarp = self.positional_timewarp(&gl)?;
@@ -215,7 +207,7 @@ impl Cardboard {
                 (attached.timewarp, attached.rendered) = (timewarp, None);
             }
         }
-        let lenses_differ = params.is_some() || optics_differ || levels_differ;
+        let lenses_differ = params.is_some() || optics_differ || layers_differ;
         if let Some(params) = params {
             self.params = params;
             self.viewer.set_native_ipd(Ipd::nearest(self.params.inter_lens));
@@ -322,7 +314,7 @@ impl Cardboard {
     /// loaded, this is a progress bar.
     ///
     /// # Errors
-    /// Those of [`Viewer::render_eyes`].
+    /// Those of [`Viewer::render`].
     pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
         let up = self.tracker.head_from_world(0.0) * Vec3::Y;
         if self.viewer.tilt(up, self.screen.rotation, timing.now_ns) {
@@ -340,25 +332,18 @@ impl Cardboard {
         self.follow(action)?;
         let pair = self.eyes(head);
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
-        let levels = attached.levels.as_mut().zip(self.viewer.levels(&pair, pair.axes()));
-        attached.is_in_levels = levels.is_some();
-        match (levels, &mut attached.timewarp) {
-            (Some((frame, levels)), _) => {
-                let to = frame.fit(&levels)?;
-                self.viewer.render_levels(&(&levels).into(), &to)?;
-                for (frame, eyes) in frame.levels() {
-                    draw_panels(&mut self.viewer, (&pair, eyes), frame)?;
-                }
-            }
-            (None, Some(timewarp)) => {
-                attached.frame.resize(pair.size)?;
+        match &mut attached.timewarp {
+            // Panels are drawn over the eyes once these are moved.
+            Some(timewarp) => {
                 timewarp.resize(pair.size)?;
-                self.viewer.render_eyes(&pair, &timewarp.targets(&attached.frame))?;
+                self.viewer.render(&pair.into(), FrameTargets::Eyes(timewarp.targets()))?;
             }
-            (None, None) => {
-                attached.frame.resize(pair.size)?;
-                self.viewer.render_eyes(&pair, &attached.frame.targets())?;
-                draw_panels(&mut self.viewer, (&pair, &pair), &attached.frame)?;
+            None => {
+                let views = self.viewer.stereo_views(&pair, pair.axes());
+                self.viewer.render(&views, FrameTargets::Images(&mut attached.images))?;
+                for (frame, layer) in attached.images.layers() {
+                    self.viewer.draw_panels(&pair, layer, frame)?;
+                }
             }
         }
         attached.rendered = Some((head, pair));
@@ -393,25 +378,30 @@ impl Cardboard {
             attached.presented.set();
             return Ok(FrameReport::of_start_screen(self.viewer.scene_state()));
         }
-        let mut frame = &attached.frame;
+        let Attached { images, timewarp, lens, .. } = attached;
         let mut turn = Quat::IDENTITY;
-        if let Some((rendered, pair)) = &attached.rendered {
-            if self.viewer.settings().timewarp != Timewarp::Off {
-                turn = rendered.inverse() * displayed;
-            }
-            if let Some(timewarp) = &mut attached.timewarp {
-                let mut shown = pair;
-                let now = EyePair { poses: now.poses, ..*pair };
-                if let Some(moved) = timewarp.run(frame, pair, &now)? {
-                    (frame, shown, turn) = (moved, &now, Quat::IDENTITY);
-                }
-                draw_panels(&mut self.viewer, (shown, shown), frame)?;
-            }
+        if let Some((rendered, _)) = attached.rendered.filter(|_| self.viewer.settings().timewarp != Timewarp::Off) {
+            turn = rendered.inverse() * displayed;
         }
-        let levels = attached.levels.as_ref().filter(|_| attached.is_in_levels);
-        match levels.and_then(|levels| levels.eye(Eye::Left).zip(levels.eye(Eye::Right))) {
-            Some((left, right)) => attached.lens.run_levels(&[left, right], turn, window),
-            None => attached.lens.run(frame.images(), turn, window),
+        match timewarp.as_mut().zip(attached.rendered.as_ref()) {
+            Some((timewarp, (_, pair))) => {
+                let now = EyePair { poses: now.poses, ..*pair };
+                let (frame, shown) = match timewarp.run(pair, &now)? {
+                    Some(moved) => {
+                        turn = Quat::IDENTITY;
+                        (moved, &now)
+                    }
+                    None => (timewarp.frame(), pair),
+                };
+                self.viewer.draw_panels(shown, shown, frame)?;
+                lens.run(frame.images(), turn, window);
+            }
+            None => match images.eye(Eye::Left).zip(images.eye(Eye::Right)) {
+                Some((left, right)) if left.0.inset.is_some() => {
+                    lens.run_levels(&[left, right], turn, window);
+                }
+                _ => lens.run(images.wide().images(), turn, window),
+            },
         }
         self.viewer.draw_corners(corner, window);
         attached.presented.set();
@@ -454,20 +444,6 @@ impl Cardboard {
             dominant: self.viewer.settings().dominant,
         }
     }
-}
-
-/// Draws the HUD and the menu into both eyes, or into a level of them: `eyes` are the whole eyes and those of the frame.
-fn draw_panels(
-    viewer: &mut Viewer,
-    (shown, pair): (&EyePair, &EyePair),
-    frame: &StereoFrame,
-) -> Result<(), ViewerError> {
-    let colors = frame.colors();
-    if let Some(panel) = viewer.hud()? {
-        panel.draw_into_eyes(shown, pair, &colors);
-    }
-    viewer.draw_menu(pair, &colors);
-    Ok(())
 }
 
 /// Returns the pose of a head with this rotation, relative to the viewpoint.

@@ -4,4 +4,5 @@ mod display;
 mod fence;
 mod timewarp;
 
+pub(crate) use display::FULL_RATE;
 pub use display::{Cardboard, HeldHead};

@@ -8,9 +8,10 @@ use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
 use yoro_render::DepthCopy;
 use yoro_render::stereo::{DepthTarget, EyeTarget, StereoError, StereoFrame};
 
-/// The depth of both finished eyes, and the pass that moves them. Each eye is synthesized from its own image; what that
+/// Both finished eyes with their depth, and the pass that moves them. Each eye is synthesized from its own image; what that
 /// image does not contain is filled like any disocclusion.
 pub(super) struct PositionalTimewarp {
+    frame: StereoFrame,
     depths: [RenderTarget; 2],
     copy: DepthCopy,
     any_view: AnyView,
@@ -22,6 +23,7 @@ impl PositionalTimewarp {
     pub(super) fn new(gl: &Rc<Context>, size: [u32; 2]) -> Result<PositionalTimewarp, GlError> {
         let depth = || RenderTarget::new(gl, size, &[], Some(Format::Depth32F));
         Ok(PositionalTimewarp {
+            frame: StereoFrame::new(gl, size)?,
             depths: [depth()?, depth()?],
             copy: DepthCopy::new(gl)?,
             any_view: AnyView::new(gl, &Options::default(), Outputs::default())?,
@@ -31,24 +33,29 @@ impl PositionalTimewarp {
 
     /// Resizes the images, if the size differs.
     pub(super) fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
+        self.frame.resize(size)?;
         self.depths.iter_mut().try_for_each(|depth| depth.resize(size))?;
         self.moved.resize(size)
     }
 
-    /// Returns the targets of a frame, extended by the depth that moving it needs.
-    pub(super) fn targets(&self, frame: &StereoFrame) -> [EyeTarget<'_>; 2] {
-        let colors = frame.targets();
+    /// Returns the eyes as they were rendered.
+    pub(super) fn frame(&self) -> &StereoFrame {
+        &self.frame
+    }
+
+    /// Returns the targets of a frame, with the depth that moving it needs.
+    pub(super) fn targets(&self) -> [EyeTarget<'_>; 2] {
+        let colors = self.frame.targets();
         Eye::BOTH.map(|eye| {
             let to = Destination::whole(&self.depths[eye.index()]);
             EyeTarget { depth: Some(DepthTarget { to, copy: &self.copy }), ..colors[eye.index()] }
         })
     }
 
-    /// Moves both eyes of a frame from where they were rendered to where they are now. Returns `None` if the head has
-    /// turned so far that the frame shows nothing of the present view.
+    /// Moves both eyes from where they were rendered to where they are now. Returns `None` if the head has turned so far that
+    /// the frame shows nothing of the present view.
     pub(super) fn run(
         &mut self,
-        frame: &StereoFrame,
         rendered: &EyePair,
         now: &EyePair,
     ) -> Result<Option<&StereoFrame>, StereoError> {
@@ -58,7 +65,7 @@ impl PositionalTimewarp {
                 Err(EyesError::Apart) => return Ok(None),
                 warp => warp?,
             };
-            let [color, depth] = [frame.eye(eye).color(0), self.depths[eye.index()].depth()];
+            let [color, depth] = [self.frame.eye(eye).color(0), self.depths[eye.index()].depth()];
             let source = Source::new(color.raw(), depth.raw());
             self.any_view.synthesize(source, &warp, &targets[eye.index()].color)?;
         }
@@ -97,11 +104,10 @@ mod tests {
     fn near_things_move_more_than_far_ones() {
         let headless = Headless::open(Backend::Egl).unwrap();
         let gl = headless.gl();
-        let frame = StereoFrame::new(gl, SIZE).unwrap();
         let mut timewarp = PositionalTimewarp::new(gl, SIZE).unwrap();
         let before = eyes(Pose { position: Vec3::ZERO, orientation: Quat::IDENTITY });
         // A bar of eight columns a metre away, a wall 50 m away.
-        for target in timewarp.targets(&frame) {
+        for target in timewarp.targets() {
             let depth = target.depth.unwrap().to;
             gl.bind_framebuffer(depth.framebuffer, depth.origin, depth.size);
             gl.clear_rectangle([0, 0], SIZE, Some(before.depth.depth(50.0)));
@@ -112,13 +118,13 @@ mod tests {
         }
         // 25 cm to the right. A tangent is 32 pixels, so a point 1 m away moves by 8 pixels.
         let now = eyes(Pose { position: Vec3::X * 0.25, orientation: Quat::IDENTITY });
-        let moved = timewarp.run(&frame, &before, &now).unwrap().unwrap();
         for eye in Eye::BOTH {
-            assert_eq!(red(&frame, eye), (28..36).collect::<Vec<_>>());
+            assert_eq!(red(timewarp.frame(), eye), (28..36).collect::<Vec<_>>());
+            let moved = timewarp.run(&before, &now).unwrap().unwrap();
             assert_eq!(red(moved, eye), (20..28).collect::<Vec<_>>());
         }
         let away = eyes(Pose { position: Vec3::ZERO, orientation: Quat::from_rotation_y(2.0) });
-        assert!(timewarp.run(&frame, &before, &away).unwrap().is_none());
+        assert!(timewarp.run(&before, &away).unwrap().is_none());
         assert_eq!(gl.take_errors(), None);
     }
 }

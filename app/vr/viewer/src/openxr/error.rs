@@ -41,7 +41,7 @@ pub enum XrError {
     },
     /// The runtime violates the specification.
     #[error("the OpenXR runtime {0}: that is a mistake in the runtime, so update it")]
-    Nonsense(String),
+    InvalidRuntimeData(String),
     /// The runtime has ended the session.
     #[error("the OpenXR runtime has ended the session by itself: a new one is begun")]
     Lost,

@@ -11,11 +11,12 @@ use super::graphics::make_current;
 use super::runtime::Runtime;
 use super::session::{Progress, Session};
 use crate::event::Event;
-use crate::rate::log_full_rate;
+use crate::cardboard::FULL_RATE;
 use crate::viewer::Viewer;
 use yoro::eyes::FoveationLevel;
 use yoro_context::Graphics;
 use yoro_gl::Context;
+use yoro_settings::FrameRate;
 
 /// The pause before the first new session. It doubles with each session that fails.
 const PAUSE: Duration = Duration::from_millis(500);
@@ -112,11 +113,11 @@ impl Headset {
     /// Tells the viewer what the runtime does.
     fn share_frames(&mut self) -> Result<(), XrError> {
         let makes_frames = self.session.as_ref().is_some_and(Session::makes_frames);
-        let shows_insets = self.session.as_ref().is_some_and(Session::shows_insets);
-        if self.session.is_some() && !makes_frames {
-            log_full_rate(self.viewer.settings());
+        let wants_half = self.viewer.settings().frame_rate == FrameRate::Half;
+        if self.session.is_some() && !makes_frames && wants_half {
+            log::warn!("{FULL_RATE}");
         }
-        let shared = self.viewer.share_with_runtime(makes_frames, shows_insets);
+        let shared = self.viewer.set_runtime_features(makes_frames);
         shared.map_err(|error| XrError::Context(error.to_string()))
     }
 

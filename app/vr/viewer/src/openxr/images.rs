@@ -93,11 +93,11 @@ impl Images {
         make_current(graphics)?;
         let images = call("xrEnumerateSwapchainImages", images)?;
         if images.is_empty() {
-            return Err(XrError::Nonsense("offers a swapchain without images".into()));
+            return Err(XrError::InvalidRuntimeData("offers a swapchain without images".into()));
         }
         let name = |image| match NonZeroU32::new(image) {
             Some(name) => Ok(glow::NativeTexture(name)),
-            None => Err(XrError::Nonsense("offers an image without a name".into())),
+            None => Err(XrError::InvalidRuntimeData("offers an image without a name".into())),
         };
         let textures = images.into_iter().map(name).collect::<Result<Vec<_>, _>>()?;
         let framebuffers = textures.iter().map(|texture| {
@@ -145,7 +145,7 @@ impl Images {
             }
         }
         if index as usize >= self.framebuffers.len() {
-            return Err(XrError::Nonsense(format!("names an image number {index} that does not exist")));
+            return Err(XrError::InvalidRuntimeData(format!("names an image number {index} that does not exist")));
         }
         self.current = Some(index as usize);
         Ok(())

@@ -13,7 +13,7 @@ use yoro_gl::{
     Context, Destination, Filter, Format, GlError, MultisampleTarget, Program, RasterState, RenderTarget,
     ShaderSource, Texture, TileTarget,
 };
-use yoro_render::stereo::{EyeTarget, LevelTargets, StereoFrame};
+use yoro_render::stereo::{EyeTarget, LayerTargets, StereoFrame};
 
 /// Formats of eye images, best first: stored as sRGB, with enough bits for linear colour, or neither.
 pub(super) const COLOR_FORMATS: [u32; 4] = [glow::SRGB8_ALPHA8, glow::RGBA16F, glow::RGB10_A2, glow::RGBA8];
@@ -90,24 +90,24 @@ impl Storage {
     }
 
     /// Begins a frame. Returns the targets for eyes that are to end up in `images`.
-    pub fn begin(&mut self, images: LevelTargets<'static>) -> Result<LevelTargets<'static>, GlError> {
+    pub fn begin(&mut self, images: LayerTargets<'static>) -> Result<LayerTargets<'static>, GlError> {
         match &mut self.detour {
             None => {
                 set_encoding(&self.gl, false);
                 Ok(images)
             }
             Some((frames, _)) => {
-                for (frame, images) in frames.iter_mut().zip(images.pairs()) {
+                for (frame, images) in frames.iter_mut().zip(images.layers()) {
                     frame.resize(images[0].color.size)?;
                 }
                 let [wide, inset] = frames.each_ref().map(StereoFrame::targets);
-                Ok(LevelTargets { wide, inset: images.inset.map(|_| inset) })
+                Ok(LayerTargets { wide, inset: images.inset.map(|_| inset) })
             }
         }
     }
 
     /// Ends a frame.
-    pub fn end(&self, images: &LevelTargets) {
+    pub fn end(&self, images: &LayerTargets) {
         let Some((frames, program)) = &self.detour else {
             set_encoding(&self.gl, true);
             return;
@@ -118,7 +118,7 @@ impl Storage {
                 set_encoding(&self.gl, true);
             }
             self.gl.set_raster_state(&RasterState::SCREEN);
-            for (frame, images) in frames.iter().zip(images.pairs()) {
+            for (frame, images) in frames.iter().zip(images.layers()) {
                 for (eye, EyeTarget { color: to, .. }) in yoro::eyes::Eye::BOTH.into_iter().zip(images) {
                     self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
                     program.bind().texture_of("source", 0, frame.eye(eye).color(0));
@@ -214,7 +214,7 @@ mod tests {
             let image = || RenderTarget::new(gl, size, &[(Format::Srgb8Alpha8, Filter::Nearest)], None);
             let images = [image().unwrap(), image().unwrap()];
             let to = images.each_ref().map(|image| EyeTarget::rectangle(Destination::whole(image)));
-            let eyes = storage.begin((&to).into()).unwrap().wide;
+            let eyes = storage.begin(LayerTargets { wide: to, inset: None }).unwrap().wide;
             for x in 0..64u32 {
                 for (eye, EyeTarget { color: way, .. }) in Eye::BOTH.into_iter().zip(eyes) {
                     gl.bind_framebuffer(way.framebuffer, way.origin, way.size);
@@ -222,7 +222,7 @@ mod tests {
                     gl.fill([x, 0], [1, 4], [grey, grey, grey, 1.0]);
                 }
             }
-            storage.end(&(&to).into());
+            storage.end(&LayerTargets { wide: to, inset: None });
             for eye in Eye::BOTH {
                 let row = images[eye.index()].read_rgba8(0, [0, 1], [64, 1]);
                 for (x, pixel) in row.chunks_exact(4).enumerate() {

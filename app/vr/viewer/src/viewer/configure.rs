@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Viewer, profiling};
+use crate::adaptive::Controller;
 use crate::error::ViewerError;
 use crate::loading::SceneSource;
 use crate::options::{render_settings, stereo_options};
@@ -49,34 +50,32 @@ impl Viewer {
             render.supports(choice.first(), attached.gl.capabilities())?;
         }
         let before = std::mem::replace(&mut self.settings, settings);
-        let in_use = self.method.choice();
+        let (choice, pipeline) = (self.method.choice, self.method.pipeline);
         if let Err(error) = self.remake(&before) {
             self.settings = before;
-            self.method.set_choice(in_use);
+            (self.method.choice, self.method.pipeline) = (choice, pipeline);
             return Err(error.into());
         }
-        let settings = &self.settings;
-        if settings.ipd != before.ipd {
-            self.ipd.chosen = settings.ipd;
+        if self.settings.ipd != before.ipd {
+            self.ipd.chosen = self.settings.ipd;
         }
-        if settings.hud != before.hud {
-            self.caption.is_shown = settings.hud;
+        if self.settings.hud != before.hud {
+            self.caption.is_shown = self.settings.hud;
         }
-        if settings.viewpoint != before.viewpoint {
-            self.scene.go_to(settings.viewpoint);
-            self.method.measure_again();
+        let has_moved = self.settings.viewpoint != before.viewpoint;
+        if has_moved {
+            self.scene.go_to(self.settings.viewpoint);
         }
-        if settings.adaptive != before.adaptive || settings.render_scale != before.render_scale {
-            self.method.restore_quality();
-            self.method.measure_again();
+        if has_moved || self.changes_quality(&before) {
+            self.measure_again();
         }
-        if settings.duration != before.duration {
+        if self.settings.duration != before.duration {
             self.stats.reopen();
         }
         if let Some(attached) = &self.attached
-            && settings.profiling != before.profiling
+            && self.settings.profiling != before.profiling
         {
-            attached.gl.set_profiling(profiling(settings));
+            attached.gl.set_profiling(profiling(&self.settings));
         }
         self.folders = folders.to_vec();
         if let Some(source) = source {
@@ -96,29 +95,37 @@ impl Viewer {
         SceneSource::find(&settings.scene, settings.seed, folders).map(Some)
     }
 
-    /// Recreates renderer and method if their settings changed.
+    fn changes_quality(&self, before: &Settings) -> bool {
+        (self.settings.adaptive, self.settings.render_scale) != (before.adaptive, before.render_scale)
+    }
+
+    /// Recreates renderer and session if their settings changed.
     fn remake(&mut self, before: &Settings) -> Result<(), GlError> {
-        let settings = &self.settings;
-        let method_differs = settings.method != before.method;
+        if self.changes_quality(before) {
+            self.controller = Controller::new();
+        }
+        let method_differs = self.settings.method != before.method;
         if method_differs {
-            self.method.set_choice((settings.method, self.method.pipeline()));
+            self.method.choice = self.settings.method;
         }
-        if let Some(attached) = &self.attached {
-            self.method.choose_pipeline(&attached.gl, settings);
+        let gl = self.attached.as_ref().map(|attached| attached.gl.clone());
+        if let Some(gl) = &gl {
+            self.choose_pipeline(gl);
         }
-        let driver = self.attached.as_ref().map(|attached| attached.gl.capabilities());
+        let settings = &self.settings;
+        let driver = gl.as_ref().map(|gl| gl.capabilities());
         let render = render_settings(settings, driver);
         let renderer_differs = render != render_settings(before, driver);
-        if let Some(attached) = &self.attached
+        if let Some(gl) = &gl
             && let Some(shown) = self.scene.shown()
             && renderer_differs
         {
-            shown.renderer = Renderer::new(&attached.gl, &render, &shown.scene)?;
+            shown.prepared.renderer = Renderer::new(gl, &render, &shown.prepared.scene)?;
         }
         let options_differ =
             stereo_options(settings, settings.pipeline) != stereo_options(before, before.pipeline);
         if renderer_differs || options_differ || method_differs {
-            self.make_method()?;
+            self.make_session()?;
         }
         Ok(())
     }

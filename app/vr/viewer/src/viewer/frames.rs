@@ -3,15 +3,17 @@
 use glam::Vec3;
 
 use super::{Attached, Viewer};
-use crate::adaptive::Load;
 use crate::caption::Status;
 use crate::error::ViewerError;
 use crate::frame::{FrameReport, FrameTiming, SceneState};
-use crate::options::stereo_options;
 use yoro::choice::Cost;
 use yoro::eyes::{EyePair, Gaze, StereoViews};
 use yoro_lenses::{Content, Panel, Placement};
-use yoro_render::stereo::{DepthTarget, EyeLevels, EyeTarget, LevelTargets};
+use yoro_gl::{Context, GlError};
+use yoro_render::stereo::{
+    Auto, DepthTarget, EyeTarget, FrameLoad, FrameReport as Rendered, FrameTargets, LayerTargets, StereoFrame,
+    StereoSession,
+};
 use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
 
 /// The sizes of the eyes' images are multiples of this many pixels, so that small changes need no new targets.
@@ -32,57 +34,39 @@ impl Viewer {
         }
     }
 
+    /// Returns what a pair of eyes sees with the settings' foveation. `axes` are the directions in the world along which the
+    /// eyes look: [`EyePair::axes`] of the display's own eyes.
+    pub fn stereo_views(&self, pair: &EyePair, axes: [Vec3; 2]) -> StereoViews {
+        let foveation = self.settings.foveation.unwrap_or_default().foveation();
+        pair.stereo_views(foveation.as_ref(), Gaze::Axes(axes)).unwrap_or_else(|_| (*pair).into())
+    }
+
     /// Renders both eyes, or only a backdrop until the scene is loaded. If neither eye can be synthesized from the
     /// other (canted eyes), both are rendered, whatever the method.
     ///
     /// # Errors
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
-    pub fn render_eyes(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), ViewerError> {
-        self.render_levels(&pair.into(), &to.into())
-    }
-
-    /// Returns the levels in which the settings' foveation renders a pair of eyes; `None` if it is rendered as a whole: by
-    /// [`FoveationLevel::Off`](yoro::eyes::FoveationLevel::Off), and where neither eye can be synthesized from the other.
-    /// `axes` are the directions in the world along which the eyes look: [`EyePair::axes`] of the display's own eyes.
-    pub fn levels(&self, pair: &EyePair, axes: [Vec3; 2]) -> Option<StereoViews> {
-        let foveation = self.settings.foveation.unwrap_or_default().foveation()?;
-        let guard = stereo_options(&self.settings, self.method.pipeline()).guard_band;
-        pair.levels(Some(&foveation), Gaze::Axes(axes), guard).ok().filter(|l| l.inset.is_some())
-    }
-
-    /// Renders both eyes of each level of a frame into their targets, like [`Viewer::render_eyes`]. Nobody composes them: a
-    /// display does so in its last pass ([`LevelFrame::eye`](yoro_render::stereo::LevelFrame::eye)) or in one of its own
-    /// ([`LevelFrame::compose`](yoro_render::stereo::LevelFrame::compose)), or its runtime does.
-    ///
-    /// # Errors
-    /// Those of [`Viewer::render_eyes`].
-    pub fn render_levels(&mut self, levels: &EyeLevels, to: &LevelTargets) -> Result<(), ViewerError> {
-        let pair = &levels.shown;
-        self.stats.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
+    pub fn render(&mut self, views: &StereoViews, targets: FrameTargets) -> Result<Rendered, ViewerError> {
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
         let Some(shown) = self.scene.shown() else {
-            for EyeTarget { color, depth, .. } in to.pairs().flatten() {
-                if let Some(DepthTarget { to, .. }) = depth {
-                    gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
-                    gl.clear_rectangle(to.origin, to.size, Some(pair.depth.clear_value()));
-                }
-                gl.bind_framebuffer(color.framebuffer, color.origin, color.size);
-                gl.fill(color.origin, color.size, BACKDROP);
-            }
-            return Ok(());
+            show_backdrop(gl, views, targets)?;
+            return Ok(Rendered { has_depth: true, ..Rendered::default() });
         };
         shown.move_on(self.now_ns)?;
-        self.method.render(shown, levels, to)
+        let session = self.session.as_mut().ok_or(ViewerError::NoContext)?;
+        let report = session.frame(&mut shown.prepared, views, targets, self.load.take().as_ref())?;
+        self.method.log_fallback(report.fallback.clone());
+        Ok(report)
     }
 
-    /// Says what the display's runtime does: whether it makes the frames between those that are rendered, from colour, depth
-    /// and motion vectors, and whether it shows insets.
+    /// Says whether the display's runtime makes the frames between those that are rendered, from colour, depth and motion
+    /// vectors.
     ///
     /// # Errors
     /// [`ViewerError::Gl`] if the method cannot be compiled for this.
-    pub fn share_with_runtime(&mut self, makes_frames: bool, shows_insets: bool) -> Result<(), ViewerError> {
-        if self.method.share_with_runtime(makes_frames, shows_insets) {
-            self.make_method()?;
+    pub fn set_runtime_features(&mut self, makes_frames: bool) -> Result<(), ViewerError> {
+        if std::mem::replace(&mut self.method.runtime_makes_frames, makes_frames) != makes_frames {
+            self.make_session()?;
         }
         Ok(())
     }
@@ -92,14 +76,9 @@ impl Viewer {
         self.display_hz = hz;
     }
 
-    /// True if the targets of the last frame that asked for motion vectors got them.
-    pub fn has_motion(&self) -> bool {
-        self.scene_state() == SceneState::Ready && self.method.has_motion()
-    }
-
     /// True if the display's runtime is to make every second frame.
     pub fn leaves_frames_to_runtime(&self) -> bool {
-        self.method.leaves_frames_to_runtime(&self.settings)
+        self.session.as_ref().is_some_and(StereoSession::leaves_frames_to_runtime)
     }
 
     /// Returns the HUD of this frame, if it is to be shown.
@@ -127,6 +106,24 @@ impl Viewer {
         Ok(Some(attached.hud.set(Content { text, progress }, placement)))
     }
 
+    /// Draws the HUD and the menu over both eyes of a frame, or over a layer of them.
+    ///
+    /// # Errors
+    /// [`ViewerError::NoContext`].
+    pub(crate) fn draw_panels(
+        &mut self,
+        shown: &EyePair,
+        layer: &EyePair,
+        frame: &StereoFrame,
+    ) -> Result<(), ViewerError> {
+        let colors = frame.colors();
+        if let Some(panel) = self.hud()? {
+            panel.draw_into_eyes(shown, layer, &colors);
+        }
+        self.draw_menu(layer, &colors);
+        Ok(())
+    }
+
     /// Writes the text of the HUD.
     fn write_caption(&mut self) {
         if let Some(question) = self.stats.question() {
@@ -139,7 +136,7 @@ impl Viewer {
             frames: self.stats.last_line(),
             celsius: self.stats.celsius(),
             method: self.method_name(),
-            auto: self.method.auto(),
+            auto: self.session.as_ref().and_then(StereoSession::auto),
             pipeline: self.pipeline_name(),
             loading: self.scene.is_loading().then(|| self.scene.name()),
         };
@@ -170,14 +167,18 @@ impl Viewer {
         let gpu_ms = gpu.map(|gpu| gpu.ms);
         let late_refreshes = self.stats.frame(now_ns, refresh_hz, pass_times, u32::from(timed.is_some()));
         let scene = self.scene_state();
-        self.method.end_frame(now_ns, refresh_hz, gpu);
-        let load = Load { now_ns, refresh_hz, late_refreshes, gpu_ms };
-        let is_shown = scene == SceneState::Ready;
-        if is_shown {
-            self.method.judge_rate(&load, self.display_hz, &self.settings);
-        }
-        if self.settings.adaptive && is_shown && self.method.adapt(&load, &self.settings) {
-            self.make_method()?;
+        let load = FrameLoad {
+            ended_ns: now_ns,
+            refresh_hz,
+            display_hz: self.display_hz,
+            late_refreshes,
+            gpu,
+            thermal_headroom: self.thermal_headroom,
+        };
+        if scene == SceneState::Ready {
+            self.load = Some(load);
+            self.method.is_mixed |= self.auto().is_some_and(Auto::is_measuring);
+            self.adapt(&load)?;
         }
         let was_over = self.stats.is_over();
         if !was_over && self.stats.is_time_up(&self.settings, now_ns) && self.ask() {
@@ -194,12 +195,29 @@ impl Viewer {
         })
     }
 
+    /// Lets the controller judge a frame with the setting `adaptive`, except while two methods are being measured, since both
+    /// have to have the same size. A change of the ImBuffer compiles the method again; the controller keeps this rare.
+    fn adapt(&mut self, load: &FrameLoad) -> Result<(), ViewerError> {
+        if !self.settings.adaptive {
+            return Ok(());
+        }
+        if self.auto().is_some_and(Auto::is_measuring) {
+            self.controller.restart();
+            return Ok(());
+        }
+        let previous = self.controller.quality().imbuffer;
+        if self.controller.frame(load).imbuffer != previous && self.imbuffer_divisor().is_some() {
+            self.make_session()?;
+        }
+        Ok(())
+    }
+
     /// Ends a second and returns its log line. Call it when a [`FrameReport`] asks for it, with the device's present
     /// state.
     pub fn telemetry(&mut self, now_ns: i64, device: &DeviceState) -> Line {
-        self.method.set_thermal_headroom(device.thermal_headroom);
+        self.thermal_headroom = device.thermal_headroom;
         let state = self.state();
-        self.method.begin_second();
+        self.method.is_mixed = false;
         self.stats.line(now_ns, &state, device)
     }
 
@@ -210,18 +228,16 @@ impl Viewer {
             pipeline: self.pipeline_name().map(str::to_owned),
             scene: self.scene_name().to_owned(),
             render_scale: self.render_scale(),
-            imbuffer: self.method.imbuffer_divisor(&self.settings),
+            imbuffer: self.imbuffer_divisor(),
             run: self.settings.run.clone(),
-            auto: self.method.reason(),
+            auto: self
+                .auto()
+                .map(|auto| if self.method.is_mixed { "measuring".into() } else { auto.to_string() }),
         }
     }
 
     fn method_name(&self) -> &'static str {
-        self.method.method().name()
-    }
-
-    fn pipeline_name(&self) -> Option<&'static str> {
-        self.method.pipeline_name()
+        self.rendering_method().name()
     }
 
     /// Returns the summary of the session since the scene was first shown, for the log.
@@ -243,6 +259,24 @@ impl Viewer {
     }
 
     fn render_scale(&self) -> f32 {
-        self.settings.render_scale * self.method.render_scale()
+        self.settings.render_scale * self.controller.quality().render_scale
     }
+}
+
+/// Fills the targets of a frame without a scene.
+fn show_backdrop(gl: &Context, views: &StereoViews, targets: FrameTargets) -> Result<(), GlError> {
+    let layers = match targets {
+        FrameTargets::Images(images) => return images.fill(views, BACKDROP),
+        FrameTargets::Eyes(wide) => LayerTargets { wide, inset: None },
+        FrameTargets::Layers(layers) => layers,
+    };
+    for EyeTarget { color, depth, .. } in layers.layers().flatten() {
+        if let Some(DepthTarget { to, .. }) = depth {
+            gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+            gl.clear_rectangle(to.origin, to.size, Some(views.shown.depth.clear_value()));
+        }
+        gl.bind_framebuffer(color.framebuffer, color.origin, color.size);
+        gl.fill(color.origin, color.size, BACKDROP);
+    }
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! Performs the user's actions, and asks questions.
 
-use super::{Viewer, gl_with_scene};
+use super::Viewer;
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
 use yoro_settings::telemetry::{Rating, ViewerState};
@@ -119,7 +119,7 @@ impl Viewer {
 
     pub(super) fn next_viewpoint(&mut self) -> Action {
         let Some(viewpoint) = self.scene.next_viewpoint() else { return Action::Nothing };
-        self.method.measure_again();
+        self.measure_again();
         Action::Viewpoint(viewpoint)
     }
 
@@ -132,8 +132,6 @@ impl Viewer {
 
     /// Switches to the next (1) or previous (-1) method of the list that the driver supports.
     pub(super) fn other_method(&mut self, step: isize) -> Result<Action, ViewerError> {
-        let gl = gl_with_scene(&self.attached, &self.scene);
-        let other = self.method.switch(gl, &self.settings, step)?;
-        Ok(other.map_or(Action::Nothing, Action::Method))
+        Ok(self.switch_method(step)?.map_or(Action::Nothing, Action::Method))
     }
 }

@@ -1,24 +1,25 @@
 //! The application without a platform.
 //!
-//! A [`Viewer`] owns scene, renderer, stereo method, HUD, settings and statistics. A display decides where the eyes
+//! A [`Viewer`] is a stereo session with its scene, panels (HUD, menu, start screen, questions) and telemetry. A display decides where the eyes
 //! are, how large their images are and how the user gets to see them. There are two displays, each of which owns its
 //! viewer: [`Cardboard`](crate::Cardboard), a phone behind lenses with its own motion sensors, and
 //! [`Headset`](crate::openxr::Headset), a headset with an OpenXR runtime. A platform (the Android application, `yoro
 //! view` and `yoro xr` on the desktop) provides a GL context, events and a surface to draw on.
 //!
 //! ```text
-//! new ──> attach(gl) ──> [ event()* ── begin() ── render_eyes() ── hud() ── end() ]* ──> summary()
+//! new ──> attach(gl) ──> [ event()* ── begin() ── render() ── hud()    ── end() ]* ──> summary()
 //!             ^   context lost: detach()   |          telemetry() when a report says so
 //!             └────────────────────────────┘
 //! ```
 //!
-//! All calls must come from one thread. Those that may use GL (`attach`, `event`, `configure`, `begin`, `render_eyes`,
+//! All calls must come from one thread. Those that may use GL (`attach`, `event`, `configure`, `begin`, `render`,
 //! `hud`, `end`, `detach`, drop) need a current context. Times are nanoseconds of a monotonic clock.
 
 mod configure;
 mod frames;
 mod input;
 mod menu;
+mod session;
 mod start;
 #[cfg(test)]
 mod tests;
@@ -30,7 +31,7 @@ use crate::caption::Caption;
 use crate::error::ViewerError;
 use crate::frame::SceneState;
 use crate::loading::SceneSource;
-use crate::method_slot::MethodSlot;
+use crate::adaptive::Controller;
 use crate::options::render_settings;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
@@ -40,7 +41,8 @@ use yoro::eyes::{FoveationLevel, Pose};
 use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::{Board, Hud};
-use yoro_render::stereo::MethodChoice;
+use session::MethodInUse;
+use yoro_render::stereo::{FrameLoad, StereoSession};
 use yoro_settings::{Ipd, Settings};
 
 /// Capacity reserved for the times of a frame's passes.
@@ -68,7 +70,14 @@ pub struct Viewer {
     settings: Settings,
     folders: Vec<PathBuf>,
     scene: SceneSlot,
-    method: MethodSlot,
+    method: MethodInUse,
+    /// Made once a scene is loaded.
+    session: Option<StereoSession>,
+    controller: Controller,
+    /// The load of the last frame that was shown.
+    load: Option<FrameLoad>,
+    /// The device's thermal headroom, if it is known.
+    thermal_headroom: Option<f32>,
     stats: SessionStats,
     caption: Caption,
     ipd: IpdSources,
@@ -101,7 +110,11 @@ impl Viewer {
         Ok(Viewer {
             folders: folders.to_vec(),
             scene: SceneSlot::new(source, settings.viewpoint),
-            method: MethodSlot::new(&settings),
+            method: MethodInUse::new(&settings),
+            session: None,
+            controller: Controller::new(),
+            load: None,
+            thermal_headroom: None,
             stats: SessionStats::default(),
             caption: Caption::new(settings.hud),
             ipd: IpdSources { chosen: settings.ipd, native: Ipd::nearest(0.0) },
@@ -126,7 +139,7 @@ impl Viewer {
     /// [`ViewerError::Gl`].
     pub fn attach(&mut self, gl: Rc<Context>) -> Result<(), ViewerError> {
         gl.set_profiling(profiling(&self.settings));
-        self.method.choose_pipeline(&gl, &self.settings);
+        self.choose_pipeline(&gl);
         // Drops what lived in an earlier context.
         self.detach();
         let (hud, board) = (Hud::new(&gl)?, Board::new(&gl)?);
@@ -138,7 +151,7 @@ impl Viewer {
     /// Drops everything that lives in the GL context, which is lost or about to be destroyed. After the next
     /// [`Viewer::attach`] the scene is loaded again.
     pub fn detach(&mut self) {
-        self.method.drop_made();
+        self.session = None;
         self.scene.drop_shown();
         self.attached = None;
     }
@@ -153,34 +166,23 @@ impl Viewer {
         self.stats.expect_scene();
     }
 
-    /// Compiles the current method, if there is a scene to use it on.
-    fn make_method(&mut self) -> Result<(), GlError> {
-        let gl = gl_with_scene(&self.attached, &self.scene);
-        self.method.make(gl, &self.settings)
-    }
-
     /// Pauses in the background: animations stop, and the time until the next frame is not counted.
     pub fn pause(&mut self) {
         if let Some(shown) = self.scene.shown() {
             shown.pause();
         }
         self.stats.pause();
-        self.method.interrupt();
+        self.interrupt();
     }
 
     /// Resumes after [`Viewer::pause`].
     pub fn resume(&mut self) {
-        self.method.interrupt();
+        self.interrupt();
     }
 
     /// Returns the settings in use.
     pub fn settings(&self) -> &Settings {
         &self.settings
-    }
-
-    /// Returns the method that the settings or the user have chosen.
-    pub fn method(&self) -> MethodChoice {
-        self.method.choice().0
     }
 
     /// Returns the distance between the eyes.
@@ -254,23 +256,19 @@ impl Viewer {
     /// Shows a scene.
     fn show(&mut self, gl: &Rc<Context>, scene: Scene) -> Result<(), GlError> {
         // The old scene is dropped first: memory may not suffice for both.
-        self.method.drop_made();
+        self.session = None;
         self.scene.drop_shown();
         self.scene.set_viewpoints(&scene.viewpoints);
         let shown = Shown::new(gl, scene, &render_settings(&self.settings, Some(gl.capabilities())))?;
-        self.method.make_first(gl, &self.settings)?;
-        log::info!("{}: {} triangles", shown.scene.name, shown.scene.triangle_count());
+        let scene = &shown.prepared.scene;
+        log::info!("{}: {} triangles", scene.name, scene.triangle_count());
         self.scene.show(shown);
         if self.stats.begin(self.now_ns) {
-            self.method.restart_controller();
+            self.controller = Controller::new();
         }
+        self.make_first_session(gl)?;
         Ok(())
     }
-}
-
-/// Returns the context, if it has a scene that a method can be used on.
-fn gl_with_scene<'a>(attached: &'a Option<Attached>, scene: &SceneSlot) -> Option<&'a Rc<Context>> {
-    attached.as_ref().filter(|_| scene.is_shown()).map(|attached| &attached.gl)
 }
 
 fn profiling(settings: &Settings) -> Profiling {

@@ -12,7 +12,7 @@ use crate::frame::{FrameReport, FrameTiming};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
-use yoro_render::stereo::Method;
+use yoro_render::stereo::{Method, MethodChoice};
 use yoro_settings::telemetry::{DeviceState, Line};
 
 const WINDOW: [u32; 2] = [320, 180];
@@ -184,7 +184,7 @@ fn auto_measures_both_methods_while_nothing_is_allocated_and_says_which_and_why(
     assert_eq!(held(gl), both, "both methods are ready from the first frame on");
     let seen = run.viewer.viewer().caption.text();
     assert!(seen.contains(&format!("auto:{} {auto}\n", line.method)), "{seen}");
-    let chosen = run.viewer.viewer().method.method();
+    let chosen = run.viewer.viewer().rendering_method();
     assert_eq!((chosen.name(), run.viewer.viewer().method()), (line.method.as_str(), MethodChoice::Auto));
     // Another viewpoint is measured again; a method that is named is not.
     run.viewer.event(Event::NextViewpoint).unwrap();
@@ -232,12 +232,12 @@ fn choices_on_this_machine() {
             };
             frame(&mut viewer);
             megabytes.push((gl.texture_bytes() - before) as f64 / 1e6);
-            while viewer.viewer().method.auto().is_some_and(|auto| auto.is_measuring()) {
+            while viewer.viewer().auto().is_some_and(|auto| auto.is_measuring()) {
                 frame(&mut viewer);
             }
-            let slot = &viewer.viewer().method;
-            if let Some(auto) = slot.auto() {
-                let ([w, h], name) = (viewer.eye_size(), slot.method().name());
+            let shown = viewer.viewer();
+            if let Some(auto) = shown.auto() {
+                let ([w, h], name) = (viewer.eye_size(), shown.rendering_method().name());
                 println!("{pairs:?} {w}x{h}: auto:{name} {auto}; textures {megabytes:.1?} MB");
             }
         }

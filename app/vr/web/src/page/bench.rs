@@ -6,7 +6,7 @@ use std::rc::Rc;
 use wasm_bindgen::prelude::*;
 use yoro::eyes::Eye;
 use yoro_gl::{Context, PassTime, Profiling};
-use yoro_render::stereo::{Method, Pipeline, StereoFrame, StereoMethod};
+use yoro_render::stereo::{Method, Pipeline, StereoFrame, StereoSession};
 
 use super::Page;
 use super::error::sentence;
@@ -16,7 +16,7 @@ use crate::settings::Settings;
 #[wasm_bindgen]
 pub struct Bench {
     gl: Rc<Context>,
-    entrants: Vec<Box<dyn StereoMethod>>,
+    entrants: Vec<StereoSession>,
     facts: String,
     frame: StereoFrame,
     size: [u32; 2],
@@ -49,7 +49,7 @@ impl Bench {
                 Some(reason) => unsupported.push((contender(method), reason)),
                 None => {
                     names.push(contender(method));
-                    entrants.push(settings.create(gl, method).map_err(sentence)?);
+                    entrants.push(settings.create_session(gl, method.into()).map_err(sentence)?);
                 }
             }
         }
@@ -138,8 +138,9 @@ impl Bench {
         let prepared = &mut scene.prepared;
         let Some(viewpoint) = prepared.scene.viewpoints.get(viewpoint) else { return Ok(()) };
         let pair = self.settings.pair(viewpoint.pose(), self.size);
-        let Some(method) = self.entrants.get_mut(contender) else { return Ok(()) };
-        method.render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame).map_err(sentence)
+        let Some(session) = self.entrants.get_mut(contender) else { return Ok(()) };
+        let targets = self.frame.fit(pair.size).map_err(sentence)?;
+        session.frame(prepared, &pair.into(), targets, None).map(drop).map_err(sentence)
     }
 }
 

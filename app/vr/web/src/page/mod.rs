@@ -20,7 +20,7 @@ use web_sys::WebGl2RenderingContext;
 use yoro::eyes::{Eye, Pose};
 use yoro_assets::Scene;
 use yoro_gl::{Context, RenderTarget};
-use yoro_render::stereo::{Auto, MethodChoice, StereoFrame};
+use yoro_render::stereo::{Auto, MethodChoice, StereoFrame, StereoSession};
 use yoro_scenes::BUILTINS;
 use yoro_settings::Ipd;
 
@@ -314,7 +314,11 @@ impl Page {
     /// Returns the name of the method in use; with `auto`, the one chosen last.
     #[wasm_bindgen(getter, js_name = methodInUse)]
     pub fn method_in_use(&self) -> String {
-        self.auto().map_or(self.settings.choice().first(), Auto::method).name().into()
+        let session = match &self.content {
+            Content::Scene(scene) => Some(&scene.session),
+            _ => None,
+        };
+        session.map_or(self.settings.choice().first(), StereoSession::method).name().into()
     }
 
     /// Returns the reason for `auto`'s method, as in the viewer's log line; none if the method was chosen by name.
@@ -436,7 +440,7 @@ impl Page {
 
     fn measure_again(&mut self) {
         if let Some(scene) = self.scene() {
-            scene.measure_again();
+            scene.session.measure_again();
         }
     }
 

@@ -99,9 +99,8 @@ impl Phone {
         };
         match &mut page.content {
             Content::Scene(scene) => {
-                self.frame.resize(pair.size).map_err(sentence)?;
-                let to = self.frame.targets();
-                scene.render_levels(&(&pair).into(), &(&to).into()).map_err(sentence)?;
+                let targets = self.frame.fit(pair.size).map_err(sentence)?;
+                scene.render_to(&pair.into(), targets).map_err(sentence)?;
             }
             Content::Stream(stream) => {
                 self.frame.resize(pair.size).map_err(sentence)?;

@@ -3,11 +3,11 @@
 use std::rc::Rc;
 
 use yoro::choice::Cost;
-use yoro::eyes::{Eye, EyePair, Pose};
+use yoro::eyes::{Eye, Pose, StereoViews};
 use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling, RenderTarget, Texture};
 use yoro_render::stereo::{
-    Auto, EyeLevels, LevelTargets, Method, SelectedMethod, StereoError, StereoFrame, StereoMethod,
+    Auto, FrameLoad, FrameReport, FrameTargets, Method, StereoError, StereoFrame, StereoSession,
 };
 use yoro_render::{PreparedScene, Renderer};
 
@@ -16,18 +16,20 @@ use crate::settings::Settings;
 /// Everything needed to show a scene.
 pub struct SceneShow {
     pub prepared: PreparedScene,
-    pub method: SelectedMethod,
+    pub session: StereoSession,
     /// The images of the last frame.
     pub frame: StereoFrame,
     truth: Option<Truth>,
-    /// The eyes of that frame.
-    pair: Option<EyePair>,
+    /// What is seen in that frame.
+    views: Option<StereoViews>,
+    /// What the last frame cost, if the choice of the method is automatic.
+    load: Option<FrameLoad>,
     passes: Vec<PassTime>,
 }
 
 /// A real render of both eyes, for comparison with the method's.
 struct Truth {
-    method: Box<dyn StereoMethod>,
+    session: StereoSession,
     frame: StereoFrame,
 }
 
@@ -39,10 +41,11 @@ impl SceneShow {
     pub fn new(gl: &Rc<Context>, settings: &Settings, scene: Scene) -> Result<SceneShow, GlError> {
         Ok(SceneShow {
             prepared: PreparedScene::new(gl, scene, &settings.render_settings())?,
-            method: settings.create_chosen(gl)?,
+            session: settings.create_session(gl, settings.choice())?,
             frame: StereoFrame::new(gl, [1, 1])?,
             truth: None,
-            pair: None,
+            views: None,
+            load: None,
             passes: Vec::new(),
         })
     }
@@ -57,14 +60,14 @@ impl SceneShow {
         settings: &Settings,
         before: &Settings,
     ) -> Result<(), GlError> {
-        (self.truth, self.pair) = (None, None);
+        (self.truth, self.views) = (None, None);
         let render = settings.render_settings();
         let renderer = if before.render_settings() == render {
             None
         } else {
             Some(Renderer::new(gl, &render, &self.prepared.scene)?)
         };
-        self.method = settings.create_chosen(gl)?;
+        self.session = settings.create_session(gl, settings.choice())?;
         if let Some(renderer) = renderer {
             self.prepared.renderer = renderer;
         }
@@ -74,7 +77,7 @@ impl SceneShow {
     /// Renders both eyes of a head, with images of `size` pixels, and the real render if the display needs it.
     ///
     /// # Errors
-    /// Those of the method.
+    /// Those of the session.
     pub fn render(
         &mut self,
         gl: &Rc<Context>,
@@ -82,13 +85,13 @@ impl SceneShow {
         head: Pose,
         size: [u32; 2],
     ) -> Result<(), StereoError> {
-        let pair = settings.pair(head, size);
-        if self.pair.is_some_and(|before| before.size != size) {
-            self.measure_again();
+        let views: StereoViews = settings.pair(head, size).into();
+        if self.views.is_some_and(|before| before.shown.size != size) {
+            self.session.measure_again();
         }
-        let PreparedScene { renderer, scene, .. } = &mut self.prepared;
-        self.method.render(renderer, scene, &pair, &mut self.frame)?;
-        self.pair = Some(pair);
+        let load = self.load.take();
+        self.session.frame(&mut self.prepared, &views, self.frame.fit(size)?, load.as_ref())?;
+        self.views = Some(views);
         if !settings.display.needs_truth() {
             self.truth = None;
             return Ok(());
@@ -96,34 +99,39 @@ impl SceneShow {
         let truth = match &mut self.truth {
             Some(truth) => truth,
             none => none.insert(Truth {
-                method: settings.create(gl, Method::Conventional)?,
+                session: settings.create_session(gl, Method::Conventional.into())?,
                 frame: StereoFrame::new(gl, size)?,
             }),
         };
-        truth.method.render(renderer, scene, &pair, &mut truth.frame)
+        truth.session.frame(&mut self.prepared, &views, truth.frame.fit(size)?, None).map(drop)
     }
 
-    /// Renders both eyes in levels.
+    /// Renders both eyes of a phone's viewer or a headset.
     ///
     /// # Errors
-    /// Those of the method.
-    pub fn render_levels(&mut self, levels: &EyeLevels, to: &LevelTargets) -> Result<(), StereoError> {
-        let PreparedScene { renderer, scene } = &mut self.prepared;
-        self.method.render_levels(renderer, scene, levels, to)
+    /// Those of the session.
+    pub fn render_to(
+        &mut self,
+        views: &StereoViews,
+        targets: FrameTargets,
+    ) -> Result<FrameReport, StereoError> {
+        let load = self.load.take();
+        self.session.frame(&mut self.prepared, views, targets, load.as_ref())
     }
 
     /// Renders the last frame `count` more times, by the method or by two real renders, and waits for the GPU. Does
     /// nothing without a real render to compare with.
     ///
     /// # Errors
-    /// Those of the method.
+    /// Those of the session.
     pub fn repeat(&mut self, real: bool, count: u32) -> Result<(), StereoError> {
-        let (Some(truth), Some(pair)) = (&mut self.truth, &self.pair) else { return Ok(()) };
-        let PreparedScene { renderer, scene, .. } = &mut self.prepared;
-        let (method, frame): (&mut dyn StereoMethod, _) =
-            if real { (&mut *truth.method, &mut truth.frame) } else { (&mut self.method, &mut self.frame) };
+        let (Some(truth), Some(views)) = (&mut self.truth, &self.views) else { return Ok(()) };
+        let (session, frame) = match real {
+            true => (&mut truth.session, &mut truth.frame),
+            false => (&mut self.session, &mut self.frame),
+        };
         for _ in 0..count {
-            method.render(renderer, scene, pair, frame)?;
+            session.frame(&mut self.prepared, views, frame.fit(views.shown.size)?, None)?;
         }
         // Browsers may ignore glFinish, but reading a pixel makes them wait.
         frame.eye(Eye::Left).read_rgba8(0, [0, 0], [1, 1]);
@@ -132,29 +140,32 @@ impl SceneShow {
 
     /// Ends a frame that was handed to the display at `now_ms`, and counts it if the choice of the method is automatic.
     pub fn end(&mut self, gl: &Context, now_ms: f64, refresh_hz: f32) {
-        let wants_times = self.method.auto().is_some() && gl.capabilities().timer_queries;
+        let is_auto = self.auto().is_some();
+        let wants_times = is_auto && gl.capabilities().timer_queries;
         if wants_times != gl.times_passes() {
             gl.set_profiling(if wants_times { Profiling::Queries } else { Profiling::Off });
         }
-        let Some(auto) = self.method.auto_mut() else { return };
+        if !is_auto {
+            return;
+        }
         self.passes.clear();
         let gpu = gl.end_timed_frame(&mut self.passes).map(|frames_ago| Cost {
             frames_ago,
             ms: self.passes.iter().map(|pass| pass.time.as_secs_f32() * 1e3).sum(),
         });
-        auto.end_frame((now_ms * 1e6) as i64, refresh_hz, gpu, None);
-    }
-
-    /// Makes an automatic choice measure again, after a change of the viewpoint or the resolution.
-    pub fn measure_again(&mut self) {
-        if let Some(auto) = self.method.auto_mut() {
-            auto.scene_changed();
-        }
+        self.load = Some(FrameLoad {
+            ended_ns: (now_ms * 1e6) as i64,
+            refresh_hz,
+            display_hz: refresh_hz,
+            late_refreshes: 0,
+            gpu,
+            thermal_headroom: None,
+        });
     }
 
     /// Returns the automatic choice between two methods, if there is one.
     pub fn auto(&self) -> Option<&Auto> {
-        self.method.auto()
+        self.session.auto()
     }
 
     /// Returns the real render of the non-dominant eye, if the display needs it.

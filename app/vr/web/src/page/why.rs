@@ -7,7 +7,9 @@ use yoro::eyes::EyePair;
 use yoro::opengl::{Gather, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
 use yoro_render::DepthCopy;
-use yoro_render::stereo::{self, DepthTarget, EyeTarget, Method, StereoError, StereoFrame, StereoOptions};
+use yoro_render::stereo::{
+    DepthTarget, EyeTarget, FrameTargets, Method, StereoError, StereoFrame, StereoOptions, StereoSession,
+};
 
 use super::Page;
 use super::error::sentence;
@@ -104,8 +106,7 @@ fn render(
     let copy = DepthCopy::new(gl)?;
     let mut to: [EyeTarget; 2] = frame.targets();
     to[pair.dominant.index()].depth = Some(DepthTarget { to: Destination::whole(&depth), copy: &copy });
-    let mut method = stereo::create(gl, Method::Conventional, &settings, options)?;
-    let prepared = &mut scene.prepared;
-    method.render_to(&mut prepared.renderer, &prepared.scene, pair, &to)?;
+    let mut session = StereoSession::new(gl, Method::Conventional.into(), &settings, options)?;
+    session.frame(&mut scene.prepared, &(*pair).into(), FrameTargets::Eyes(to), None)?;
     Ok(Some(Content { frame, depth }))
 }

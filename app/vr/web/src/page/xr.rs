@@ -5,7 +5,7 @@ use yoro::eyes::{DepthRange, EyePair};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{Content as HudContent, Hud, Placement};
 use yoro_render::DepthCopy;
-use yoro_render::stereo::{DepthTarget, EyeTarget, LevelFrame, StereoMethod as _, Substituted};
+use yoro_render::stereo::{DepthTarget, EyeTarget, FallbackReason, FrameTargets};
 
 use super::error::sentence;
 use super::{Content, Page};
@@ -22,8 +22,6 @@ pub struct Headset {
     /// Colour and depth of each eye.
     eyes: [RenderTarget; 2],
     copy: DepthCopy,
-    /// Made for the first frame in levels.
-    levels: Option<LevelFrame>,
     hud: Hud,
 }
 
@@ -47,7 +45,6 @@ impl Headset {
         Ok(Headset {
             eyes: [eye()?, eye()?],
             copy: DepthCopy::new(&page.gl).map_err(sentence)?,
-            levels: None,
             hud: Hud::new(&page.gl).map_err(sentence)?,
         })
     }
@@ -70,34 +67,19 @@ impl Headset {
         let Some(pair) = eyes(views, &page.settings, &page.walker, size) else {
             return Err(JsError::new("The headset's views cannot be understood."));
         };
-        let Headset { eyes: images, copy, levels: made, hud } = self;
+        let Headset { eyes: images, copy, hud } = self;
         images.iter_mut().try_for_each(|image| image.resize(size)).map_err(sentence)?;
         let mut fits = true;
         match &mut page.content {
             Content::Scene(scene) => {
-                let levels = page.settings.levels(&pair);
                 let to = [0, 1].map(|i| EyeTarget {
                     depth: Some(DepthTarget { to: images[i].depth_only(), copy }),
                     ..EyeTarget::of(&images[i])
                 });
-                match levels {
-                    Some(levels) => {
-                        let frame = match made {
-                            Some(frame) => frame,
-                            none => none.insert(LevelFrame::new(&page.gl, false).map_err(sentence)?),
-                        };
-                        let to = frame.fit(&levels).map_err(sentence)?;
-                        scene.render_levels(&(&levels).into(), &to).map_err(sentence)?;
-                        frame.compose(&[0, 1].map(|i| images[i].color_only()));
-                        // Composed eyes have no depth: the browser moves them as if all were far away.
-                        for image in images.iter().map(RenderTarget::depth_only) {
-                            page.gl.bind_framebuffer(image.framebuffer, image.origin, image.size);
-                            page.gl.clear_rectangle(image.origin, image.size, Some(DEPTH.clear_value()));
-                        }
-                    }
-                    None => scene.render_levels(&(&pair).into(), &(&to).into()).map_err(sentence)?,
-                }
-                fits = !matches!(scene.method.report().substituted, Some(Substituted::Eyes(_)));
+                // Composed eyes have no depth: the browser moves them as if all were far away.
+                let views = page.settings.stereo_views(&pair);
+                let report = scene.render_to(&views, FrameTargets::Eyes(to)).map_err(sentence)?;
+                fits = !matches!(report.fallback, Some(FallbackReason::Eyes(_)));
             }
             Content::Stream(stream) => {
                 stream

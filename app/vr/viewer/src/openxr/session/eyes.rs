@@ -6,8 +6,10 @@ use openxr as xr;
 use super::state::Session;
 use crate::openxr::error::{XrError, call};
 use crate::viewer::Viewer;
-use yoro::eyes::{DepthRange, EyePair, EyesError, Frustum, GuardBand, Pose};
-use yoro_render::stereo::{self, EyeLevels};
+use yoro::eyes::{
+    DepthRange, EyePair, EyesError, Foveation, Frustum, GuardBand, Pose, StereoViews, ViewLayer,
+};
+use yoro_render::stereo;
 use yoro_settings::Settings;
 
 /// The largest magnitude of a field of view's angles that is accepted, in radians.
@@ -25,7 +27,7 @@ impl Session {
         settings: &Settings,
         time: xr::Time,
         sizes: [[u32; 2]; 2],
-    ) -> Result<Option<EyeLevels>, XrError> {
+    ) -> Result<Option<StereoViews>, XrError> {
         let (flags, views) =
             call("xrLocateViews", self.session.locate_views(self.views, time, &self.spaces.ahead))?;
         if !flags.contains(xr::ViewStateFlags::ORIENTATION_VALID | xr::ViewStateFlags::POSITION_VALID) {
@@ -37,7 +39,7 @@ impl Session {
             ([left, right, left_inset, right_inset], true) => {
                 ([left, right], Some([left_inset, right_inset]))
             }
-            _ => return Err(XrError::Nonsense(format!("locates {} views", views.len()))),
+            _ => return Err(XrError::InvalidRuntimeData(format!("locates {} views", views.len()))),
         };
         // An invalid pose counts as unknown, whatever the flags say. The insets have the poses of their eyes.
         let [Some(left), Some(right)] = eyes.map(|view| to_pose(&view.pose)) else { return Ok(None) };
@@ -45,7 +47,7 @@ impl Session {
             let mut frusta = [Frustum { left: 0.0, right: 0.0, bottom: 0.0, top: 0.0 }; 2];
             for (frustum, view) in frusta.iter_mut().zip(views) {
                 *frustum = to_frustum(&view.fov).ok_or_else(|| {
-                    XrError::Nonsense(format!("gives an eye the field of view {:?}", view.fov))
+                    XrError::InvalidRuntimeData(format!("gives an eye the field of view {:?}", view.fov))
                 })?;
             }
             let (poses, dominant) = ([left, right], settings.dominant);
@@ -53,12 +55,13 @@ impl Session {
         };
         let wide = pair(eyes, sizes[0])?;
         let inset = insets.map(|insets| pair(insets, sizes[1])).transpose()?;
-        Ok(Some(EyeLevels { shown: wide, wide, inset }))
+        Ok(Some(with_inset(wide, inset, settings)))
     }
 
     /// Returns eyes that the viewer's method can use, close to those of the runtime. An inset keeps the poses of its eye.
-    pub(super) fn align(&mut self, viewer: &Viewer, native: EyeLevels) -> EyeLevels {
-        let reason = native.pairs().find_map(|pair| stereo::unfit(viewer.method().first(), pair));
+    pub(super) fn align(&mut self, viewer: &Viewer, native: StereoViews) -> StereoViews {
+        let method = viewer.method().first();
+        let reason = native.layers().find_map(|layer| stereo::alignment_error(method, &layer.eyes));
         let aligned = |pair: &EyePair| match reason {
             Some(EyesError::Density { .. } | EyesError::Rows { .. }) => Some(pair.row_aligned()),
             Some(EyesError::Canted { .. } | EyesError::OffAxis { .. }) => pair.rectified(),
@@ -68,16 +71,18 @@ impl Session {
             growth(eyes, native) <= MAX_GROWTH && eyes.synthesis_views(GuardBand::None).is_ok()
         };
         // All levels or none: those of an eye have one pose.
-        let wide = aligned(&native.wide).filter(|eyes| is_good(eyes, &native.wide));
-        let aligned = wide.and_then(|wide| {
-            let Some(own) = &native.inset else { return Some(EyeLevels::from(&wide)) };
-            let inset = aligned(own).filter(|eyes| is_good(eyes, own))?;
-            Some(EyeLevels { shown: wide, wide, inset: Some(inset) })
+        let aligned = |layer: &ViewLayer| aligned(&layer.eyes).filter(|eyes| is_good(eyes, &layer.eyes));
+        let aligned = aligned(&native.wide).and_then(|wide| {
+            let inset = match &native.inset {
+                Some(inset) => Some(aligned(inset)?),
+                None => None,
+            };
+            Some(with_inset(wide, inset, viewer.settings()))
         });
         let kind = std::mem::discriminant::<EyesError>;
         if reason.as_ref().map(kind) != self.realigned.as_ref().map(kind) {
             if let (Some(eyes), Some(reason)) = (&aligned, &reason) {
-                let more = (growth(&eyes.wide, &native.wide) - 1.0) * 100.0;
+                let more = (growth(&eyes.wide.eyes, &native.wide.eyes) - 1.0) * 100.0;
                 log::info!(
                     "{}: both eyes are rendered parallel and alike, in frusta up to {more:.0} % wider, and the compositor turns them back",
                     match reason {
@@ -94,6 +99,13 @@ impl Session {
         }
         aligned.unwrap_or(native)
     }
+}
+
+/// Returns what eyes see whose insets, if there are any, a runtime shows.
+fn with_inset(wide: EyePair, inset: Option<EyePair>, settings: &Settings) -> StereoViews {
+    let foveation = settings.foveation.unwrap_or_default().foveation().unwrap_or(Foveation::MEDIUM);
+    let inset = inset.map(|eyes| ViewLayer { eyes, nearest: Some(foveation.nearest) });
+    StereoViews { inset, ..wide.into() }
 }
 
 /// Returns the largest factor by which a side of an eye's frustum has grown.

@@ -2,7 +2,6 @@
 
 use std::ffi::c_void;
 
-use glam::Vec3;
 use openxr as xr;
 use xr::sys;
 
@@ -14,11 +13,11 @@ use crate::openxr::error::{XrError, check};
 use crate::openxr::images::EyeImages;
 use crate::openxr::motion::{MotionInfo, ends};
 use crate::viewer::Viewer;
-use yoro::eyes::{Eye, EyePair, Pose, StereoViews};
+use yoro::eyes::{Eye, EyePair, Pose, StereoViews, ViewLayer};
 use yoro_context::Graphics;
 use yoro_lenses::{Board, board_metres};
 use yoro_render::DepthCopy;
-use yoro_render::stereo::{DepthTarget, EyeLevels, EyeTarget, LevelFrame, LevelTargets};
+use yoro_render::stereo::{DepthTarget, EyeTarget, FrameTargets, LayerTargets};
 use yoro_settings::Ipd;
 
 /// Both eyes and their insets.
@@ -33,7 +32,7 @@ pub(super) struct Layers {
 
 /// The eyes as they are submitted, with insets if the runtime shows insets.
 pub(super) struct Submitted {
-    pub levels: EyeLevels,
+    pub views: StereoViews,
     pub drawn: Drawn,
 }
 
@@ -47,15 +46,6 @@ pub(super) struct Drawn {
     pub leaves_frame: bool,
     /// True if it gets motion vectors for it.
     pub has_motion: bool,
-}
-
-/// The eyes of a frame in the scene.
-struct InScene {
-    levels: EyeLevels,
-    /// The axes of the runtime's own eyes.
-    axes: [Vec3; 2],
-    /// The place of the user's straight ahead.
-    place: Pose,
 }
 
 impl Session {
@@ -74,29 +64,37 @@ impl Session {
         let Some(native) = self.locate(viewer.settings(), time, sizes)? else { return Ok(nothing) };
         viewer.set_native_ipd(Ipd::nearest(native.shown.ipd()));
         let shown = self.align(viewer, native);
-        let head = Pose { position: shown.wide.middle(), orientation: shown.wide.poses[0].orientation };
+        let eyes = &shown.wide.eyes;
+        let head = Pose { position: eyes.middle(), orientation: eyes.poses[0].orientation };
         let rays = match &self.input {
             Some(input) if viewer.is_menu_open() => input.rays(&self.spaces.ahead, time)?,
             _ => [None; 2],
         };
         let looked = viewer.look(head, rays);
-        if let Some(action) = self.told(looked).filter(|action| *action != Action::Nothing) {
+        if let Some(action) = self.log_error(looked).filter(|action| *action != Action::Nothing) {
             log::info!("{action}");
             self.recenter |= action == Action::Recenter;
         }
-        let poses = poses_in_scene(viewer, &shown.wide);
-        let placed = |pair: EyePair| EyePair { poses, ..pair };
-        let levels = EyeLevels {
+        let poses = poses_in_scene(viewer, eyes);
+        let placed = |eyes: EyePair| EyePair { poses, ..eyes };
+        let placed_layer = |layer: ViewLayer| ViewLayer { eyes: placed(layer.eyes), ..layer };
+        let in_scene = StereoViews {
             shown: placed(shown.shown),
-            wide: placed(shown.wide),
-            inset: shown.inset.map(placed),
+            wide: placed_layer(shown.wide),
+            inset: shown.inset.map(placed_layer),
+            ..shown
         };
-        let axes = native.wide.poses.map(|pose| viewer.place(pose).forward());
-        let eyes = InScene { levels, axes, place: viewer.place(Pose::IDENTITY) };
-
-        let composed = self.own_levels(viewer, &eyes);
+        // A runtime that shows insets composes them itself. Of one view, an API layer may need colour and depth of one size.
+        let views = match self.views {
+            xr::ViewConfigurationType::PRIMARY_STEREO => {
+                let axes = native.shown.poses.map(|pose| viewer.place(pose).forward());
+                viewer.stereo_views(&in_scene.shown, axes)
+            }
+            _ => in_scene,
+        };
+        let is_composed = in_scene.inset.is_none() && views.inset.is_some();
         if let Some(foveation) = &mut self.fixed_foveation {
-            let level = if composed.is_some() { viewer.settings().foveation } else { None };
+            let level = if is_composed { viewer.settings().foveation } else { None };
             foveation.set(graphics, &self.session, &self.wide.eyes, level.unwrap_or_default())?;
         }
         self.wide.acquire(graphics)?;
@@ -104,98 +102,72 @@ impl Session {
         let leaves_frames = viewer.leaves_frames_to_runtime();
         let motion = self.motion.as_mut().filter(|_| leaves_frames);
         motion.map_or(Ok(()), |motion| motion.acquire(graphics))?;
-        let no_image = || XrError::Nonsense("has no image to draw into".into());
+        let no_image = || XrError::InvalidRuntimeData("has no image to draw into".into());
         let targets =
             |level: &RuntimeLevel, pair: &EyePair| level.eyes.targets(pair.size).ok_or_else(no_image);
-        let images = LevelTargets {
-            wide: targets(&self.wide, &levels.wide)?,
-            inset: self
-                .inset
-                .as_ref()
-                .zip(levels.inset)
-                .map(|(own, pair)| targets(own, &pair))
-                .transpose()?,
+        let inset = self.inset.as_ref().zip(in_scene.inset);
+        let images = LayerTargets {
+            wide: targets(&self.wide, &in_scene.shown)?,
+            inset: inset.map(|(own, layer)| targets(own, &layer.eyes)).transpose()?,
         };
-        let rendered = self.render_eyes(viewer, &eyes, composed, &images)?;
+        let rendered = self.render_eyes(viewer, &views, &images)?;
         if capture && rendered.is_some() {
             let eyes = images.wide.map(|image| self.gl.read_rgba8(&image.color));
-            *captured = Some(Capture { eyes, pair: levels.wide });
+            *captured = Some(Capture { eyes, pair: in_scene.shown });
         }
         self.wide.release(graphics)?;
         self.inset.as_mut().map_or(Ok(()), |inset| inset.release(graphics))?;
         self.motion.as_mut().map_or(Ok(()), |motion| motion.release(graphics))?;
         let Some(drawn) = rendered else { return Ok(nothing) };
         let panel = self.render_panel(graphics, viewer)?;
-        Ok(Layers { eyes: Some(Submitted { levels: shown, drawn }), panel })
+        Ok(Layers { eyes: Some(Submitted { views: shown, drawn }), panel })
     }
 
-    /// Returns the levels of which this program composes the eyes, if it does.
-    fn own_levels(&self, viewer: &Viewer, InScene { levels, axes, .. }: &InScene) -> Option<StereoViews> {
-        // A runtime that shows insets composes them itself. Of one view, an API layer may need colour and depth of one size.
-        let is_stereo = self.views == xr::ViewConfigurationType::PRIMARY_STEREO;
-        if is_stereo { viewer.levels(&levels.wide, *axes) } else { None }
-    }
-
-    /// Renders both eyes into images, by way of these levels if there are any; `None` if the viewer cannot.
+    /// Renders both eyes into images; `None` if the viewer cannot.
     fn render_eyes(
         &mut self,
         viewer: &mut Viewer,
-        InScene { levels, place, .. }: &InScene,
-        own: Option<StereoViews>,
-        images: &LevelTargets<'static>,
+        views: &StereoViews,
+        images: &LayerTargets<'static>,
     ) -> Result<Option<Drawn>, XrError> {
-        let eyes = self.storage.begin(*images)?;
+        let mut to: LayerTargets = self.storage.begin(*images)?;
+        let colors = to.wide.map(|eye| eye.color);
+        let place = viewer.place(Pose::IDENTITY);
+        let copy = self.depth_copy.as_ref();
+        let depth_size = views.wide.eyes.size;
+        to.wide = self.wide.with_depth(copy, to.wide, depth_size);
         let mut motion = self.motion.as_mut().filter(|_| viewer.leaves_frames_to_runtime());
         let leaves_frame = motion.is_some();
-        let copy = self.depth_copy.as_ref();
-        let (mut depth_size, mut has_motion) = (None, false);
-        let mut whole = |eyes, size| {
-            let eyes = self.wide.with_depth(copy, eyes, size);
-            let eyes = match &mut motion {
-                Some(motion) => motion.targets(&self.gl, eyes, *place)?,
-                None => eyes,
-            };
-            (depth_size, has_motion) = (Some(size), eyes[0].motion.is_some());
-            Ok::<_, XrError>(eyes)
-        };
-        let rendered = match own {
-            Some(own) => {
-                let frame = match &mut self.composed {
-                    Some(frame) => frame,
-                    slot => slot.insert(LevelFrame::new(&self.gl, false)?),
-                };
-                let mut to = frame.fit(&own)?;
-                if has_same_frusta(&own.wide.eyes, &levels.wide) {
-                    to.wide = whole(to.wide, own.wide.eyes.size)?;
-                }
-                let rendered = viewer.render_levels(&(&own).into(), &to);
-                frame.compose(&eyes.wide.map(|eye| eye.color));
-                rendered
+        if let Some(motion) = &mut motion {
+            to.wide = motion.targets(&self.gl, to.wide, place)?;
+        }
+        let inset = self.inset.as_ref().zip(to.inset).zip(views.inset);
+        let targets = match inset {
+            Some(((level, eyes), layer)) => {
+                let inset = Some(level.with_depth(copy, eyes, layer.eyes.size));
+                FrameTargets::Layers(LayerTargets { wide: to.wide, inset })
             }
-            None => {
-                self.composed = None;
-                let inset = self.inset.as_ref().zip(eyes.inset).zip(levels.inset);
-                let to = LevelTargets {
-                    wide: whole(eyes.wide, levels.wide.size)?,
-                    inset: inset.map(|((level, eyes), pair)| level.with_depth(copy, eyes, pair.size)),
-                };
-                viewer.render_levels(levels, &to)
-            }
+            None => FrameTargets::Eyes(to.wide),
         };
-        has_motion &= viewer.has_motion();
-        let is_former = leaves_frame && rendered.is_ok();
+        let rendered = viewer.render(views, targets);
+        let is_previous = leaves_frame && rendered.is_ok();
         if let Some(motion) = &mut self.motion {
-            motion.remember(is_former.then_some((levels.wide, *place)));
+            motion.remember(is_previous.then_some((views.shown, place)));
         }
         if let Some(mask) = &self.mask
             && self.realigned.is_none()
         {
-            mask.draw(&levels.wide.frusta, &eyes.wide.map(|eye| eye.color));
+            mask.draw(&views.shown.frusta, &colors);
         }
         self.storage.end(images);
         // The runtime may read the images on another queue. SAFETY: `flush` has no arguments.
         unsafe { glow::HasContext::flush(self.gl.raw()) };
-        Ok(self.told(rendered).map(|()| Drawn { depth_size, leaves_frame, has_motion }))
+        let drawn = self.log_error(rendered).map(|report| Drawn {
+            depth_size: report.has_depth.then_some(depth_size),
+            leaves_frame,
+            has_motion: report.has_motion,
+        });
+        Ok(drawn)
     }
 
     /// Updates the image of the menu or the HUD, if one of them is to be shown.
@@ -234,7 +206,7 @@ impl Session {
             Ok(Some(panel)) => panel,
             Ok(None) => return Ok(None),
             Err(error) => {
-                self.told::<()>(Err(error));
+                self.log_error::<()>(Err(error));
                 return Ok(None);
             }
         };
@@ -257,8 +229,8 @@ impl Session {
     /// Calls xrEndFrame.
     pub(super) fn end_frame(&mut self, time: xr::Time, layers: &Layers) -> Result<(), XrError> {
         let eyes = layers.eyes.as_ref();
-        let wide = eyes.map(|eyes| (&self.wide, &eyes.levels.wide, eyes.drawn.depth_size));
-        let inset = eyes.and_then(|eyes| Some((self.inset.as_ref()?, eyes.levels.inset.as_ref()?)));
+        let wide = eyes.map(|eyes| (&self.wide, &eyes.views.wide.eyes, eyes.drawn.depth_size));
+        let inset = eyes.and_then(|eyes| Some((self.inset.as_ref()?, &eyes.views.inset.as_ref()?.eyes)));
         let inset = inset.map(|(level, pair)| (level, pair, Some(pair.size)));
         let submitted = || {
             let levels = [wide, inset].into_iter().flatten();
@@ -267,7 +239,7 @@ impl Session {
         let moving = eyes.filter(|eyes| eyes.drawn.leaves_frame).zip(self.motion.as_ref());
         let motions = Eye::BOTH.map(|eye| {
             let (eyes, motion) = moving?;
-            motion.info(eye, &eyes.levels.wide.depth, eyes.drawn.has_motion)
+            motion.info(eye, &eyes.views.wide.eyes.depth, eyes.drawn.has_motion)
         });
         // The insets, which come after the eyes, have no vectors.
         let after = |i: usize| {
@@ -333,17 +305,6 @@ impl Session {
 fn frame_size(viewer: &Viewer, level: &RuntimeLevel) -> [u32; 2] {
     let wanted = viewer.eye_size(level.recommended.map(|n| n as f32));
     [0, 1].map(|i| wanted[i].min(level.size[i]))
-}
-
-/// True if a level's frusta are those of the eyes, to a hundredth of its pixels.
-fn has_same_frusta(level: &EyePair, eyes: &EyePair) -> bool {
-    Eye::BOTH.iter().all(|eye| {
-        let [own, shown] = [level, eyes].map(|pair| pair.frusta[eye.index()]);
-        let pixel = (own.width() / level.size[0] as f32).min(own.height() / level.size[1] as f32);
-        let sides =
-            [own.left - shown.left, own.right - shown.right, own.bottom - shown.bottom, own.top - shown.top];
-        sides.iter().all(|side| side.abs() < 0.01 * pixel)
-    })
 }
 
 /// Returns the poses of the eyes in the scene, as far apart as the user has chosen.

@@ -94,7 +94,6 @@ impl Session {
             inset,
             motion,
             depth_copy: depth.map(|(_, copy)| copy),
-            composed: None,
             fixed_foveation: FixedFoveation::new(&session),
             panel,
             storage,
@@ -213,7 +212,7 @@ impl Recommended {
             [size[0].min(view.max_image_rect_width), size[1].min(view.max_image_rect_height)]
         });
         if size.contains(&0) || largest.contains(&0) {
-            return Err(XrError::Nonsense("recommends images without pixels".into()));
+            return Err(XrError::InvalidRuntimeData("recommends images without pixels".into()));
         }
         Ok(Recommended { size, largest })
     }
@@ -250,7 +249,7 @@ impl System {
             .iter()
             .copied()
             .find(|views| configurations.contains(views))
-            .ok_or_else(|| XrError::Nonsense("offers neither one view nor two".into()))?;
+            .ok_or_else(|| XrError::InvalidRuntimeData("offers neither one view nor two".into()))?;
         let sizes = call(
             "xrEnumerateViewConfigurationViews",
             instance.enumerate_view_configuration_views(id, views),
@@ -292,7 +291,7 @@ impl FrameImages {
     ) -> Result<FrameImages, XrError> {
         let formats = call("xrEnumerateSwapchainFormats", session.enumerate_swapchain_formats())?;
         let color = storage::choose(&storage::COLOR_FORMATS, &formats).ok_or_else(|| {
-            XrError::Nonsense("offers no format of images that OpenGL ES can draw to".into())
+            XrError::InvalidRuntimeData("offers no format of images that OpenGL ES can draw to".into())
         })?;
         let foveation = fixed_foveation::flags(session, gl);
         let level = |LevelSize { recommended, size }: LevelSize| {
@@ -317,7 +316,7 @@ impl FrameImages {
         );
         let panel = optional("there is no HUD", panel)?.map(|images| PanelImages { images, version: None });
         let mut levels = levels.into_iter();
-        let wide = levels.next().ok_or_else(|| XrError::Nonsense("has no views".into()))?;
+        let wide = levels.next().ok_or_else(|| XrError::InvalidRuntimeData("has no views".into()))?;
         Ok(FrameImages { color, wide, inset: levels.next(), depth, panel, formats })
     }
 }

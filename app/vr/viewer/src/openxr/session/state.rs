@@ -18,7 +18,6 @@ use yoro::eyes::EyesError;
 use yoro_context::Graphics;
 use yoro_gl::Context;
 use yoro_render::DepthCopy;
-use yoro_render::stereo::LevelFrame;
 use yoro_settings::Performance;
 
 /// The result of [`Session::step`].
@@ -75,8 +74,6 @@ pub struct Spaces {
 pub struct Session {
     pub(super) storage: Storage,
     pub(super) mask: Option<Mask>,
-    /// Made when the eyes are first composed of levels by this program.
-    pub(super) composed: Option<LevelFrame>,
     /// `None` if the runtime has no foveation of its own.
     pub(super) fixed_foveation: Option<FixedFoveation>,
     pub(super) depth_copy: Option<DepthCopy>,
@@ -118,11 +115,6 @@ impl Session {
         self.motion.is_some()
     }
 
-    /// True if the runtime shows insets.
-    pub fn shows_insets(&self) -> bool {
-        self.inset.is_some()
-    }
-
     /// True if the runtime wants frames.
     pub fn is_running(&self) -> bool {
         self.is_running
@@ -139,7 +131,7 @@ impl Session {
     }
 
     /// Returns the value of a viewer's call or logs its error, which is logged only once if it repeats in every frame.
-    pub(super) fn told<T>(&mut self, result: Result<T, ViewerError>) -> Option<T> {
+    pub(super) fn log_error<T>(&mut self, result: Result<T, ViewerError>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
             Err(error) => {

@@ -61,7 +61,7 @@ impl Session {
         ended?;
         let cpu_ms = begin.elapsed().as_secs_f64() * 1e3;
         let report = match layers.eyes {
-            Some(_) => self.told(viewer.end(&timing)),
+            Some(_) => self.log_error(viewer.end(&timing)),
             None => None,
         };
         Ok(Progress::Frame(Frame { report, cpu_ms, capture: captured.map(Box::new) }))

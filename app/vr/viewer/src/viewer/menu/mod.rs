@@ -10,6 +10,7 @@ pub(super) use logic::Menu;
 use logic::{Choice, Item, Look};
 use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_gl::Destination;
+use yoro_render::stereo::StereoSession;
 use yoro_settings::{Setting, Settings};
 
 /// The quality levels: name, `render-scale`, `adaptive`, `msaa` and `foveation`.
@@ -23,6 +24,7 @@ impl Viewer {
     /// # Errors
     /// Those of [`Viewer::event`].
     pub fn look(&mut self, head: Pose, rays: [Option<Pose>; 2]) -> Result<Action, ViewerError> {
+        self.stats.look(head.orientation, self.now_ns);
         if self.stats.question().is_some() {
             self.menu.close();
             return Ok(Action::Nothing);
@@ -51,7 +53,7 @@ impl Viewer {
             self.menu.open();
         }
         self.write_menu();
-        if let Err(error) = self.method.prepare_comparison() {
+        if let Some(Err(error)) = self.session.as_mut().map(StereoSession::prepare_comparison) {
             log::warn!("nothing to compare with: {error}");
         }
         Action::Menu(true)
@@ -64,7 +66,7 @@ impl Viewer {
 
     fn compare(&mut self) {
         let is_comparing = self.menu.is_comparing();
-        if self.method.compare(is_comparing) {
+        if self.session.as_mut().is_some_and(|session| session.compare(is_comparing)) {
             log::info!("compare: {}", if is_comparing { "two real renders" } else { self.method().name() });
             let message = if is_comparing { "both eyes rendered" } else { "" };
             self.caption.announce(message.into(), self.now_ns);
