@@ -11,7 +11,7 @@ use crate::in_memory::{InMemory, Synthesize};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityMap, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
 use yoro::synthesis::SOURCE_MAP_HOLE;
 use yoro_context::{Backend, Headless};
-use yoro_gl::Context;
+use yoro_gl::{Capabilities, Context};
 
 /// A function that makes a pipeline.
 type Make = Box<dyn Fn(&Rc<Context>) -> Synthesize>;
@@ -70,6 +70,12 @@ pub fn on_every_backend(body: impl Fn(&Rc<Context>)) {
         assert_eq!(headless.gl().take_errors(), None, "{backend:?}");
         assert_eq!(headless.gl().object_count(), 0, "{backend:?} leaks GL objects");
     }
+}
+
+/// Opens EGL as a driver that has only OpenGL ES 3.0.
+pub fn open_es_300() -> Headless {
+    Headless::open_limited(Backend::Egl, Capabilities::limit_to_es_300)
+        .expect("EGL is set up by `cargo xtask setup`")
 }
 
 pub fn pair(size: [u32; 2], dominant: Eye, ipd: f32, convention: DepthConvention) -> EyePair {
@@ -315,7 +321,7 @@ pub fn depth_that_is_no_number_ends(subjects: &[Subject]) {
                     depth[8 * 96..16 * 96].iter_mut().skip(1).step_by(3).for_each(|d| *d = value);
                     depth[12 * 96..13 * 96].fill(value);
                     let got = pipeline.run(&rgba, &depth, &warp);
-                    // Fills reach as many rows as the hole's background is pixels away, at most twelve (`fill_spread`).
+                    // Fills reach as many rows as the hole's background is pixels away, at most twelve (`fill_hole`).
                     // Here no surface moves by more than six pixels.
                     assert_eq!(row(&got.rgba, 0, 96 * 4), row(&want.rgba, 0, 96 * 4), "{subject:?} {value}");
                     assert_eq!(

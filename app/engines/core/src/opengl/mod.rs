@@ -76,12 +76,24 @@ pub struct Source {
     pub part: Option<Part>,
     /// The layer of both textures, for a pipeline with [`Options::array_textures`]; 0 otherwise.
     pub layer: u32,
+    /// What is added to the colours, for a [`Gather`] with [`Options::bloom`].
+    pub bloom: Option<Bloom>,
+}
+
+/// Bloom that is not yet part of a source's colours.
+#[derive(Clone, Copy, Debug)]
+pub struct Bloom {
+    /// Scene-referred light in linear RGB, over the same area as the source's textures, of any size. It is sampled with
+    /// the filter of the texture.
+    pub texture: glow::Texture,
+    /// The factor on the texture's values, the exposure included.
+    pub strength: f32,
 }
 
 impl Source {
     /// Returns a source that is the whole of two textures.
     pub fn new(color: glow::Texture, depth: glow::Texture) -> Source {
-        Source { color, depth, part: None, layer: 0 }
+        Source { color, depth, part: None, layer: 0, bloom: None }
     }
 
     /// Returns the place of the source, of this size, in its textures, and that of the target.
@@ -126,6 +138,11 @@ pub struct Options {
     /// the nearer counts. It is how depth is carried through the average of samples in a tile-based GPU; see the guide
     /// for engines.
     pub depth_pairs: bool,
+    /// True if [`Source::bloom`] is added to the synthesized colours. This saves a pass over the rendered eye. The
+    /// source's colours must be those of `tonemap` in `include/color.glsl` of `yoro-shaders`: it is undone, the light is
+    /// added, and it is applied again. Alpha becomes luma. Only for a [`Gather`], which reads the bloom by texture unit
+    /// 4; [`GlState::Preserve`] does not restore that unit.
+    pub bloom: bool,
 }
 
 impl Options {
@@ -135,6 +152,7 @@ impl Options {
             ("SOURCE_PARTS", self.parts),
             ("SOURCE_LAYERS", self.array_textures),
             ("DEPTH_PAIRS", self.depth_pairs),
+            ("BLOOM", self.bloom),
         ])
     }
 

@@ -14,7 +14,7 @@ use super::over::{Over, OverlaySurfaces};
 use super::pipeline::Synthesis;
 use crate::view::{DepthResolve, DrawRequest, GpuScene, Layout, Renderer, Selection, Targets};
 use yoro::eyes::{Eye, EyePair, GuardBand, SynthesisViews};
-use yoro::opengl::{Gather, GuessedDepth, Options, Outputs, Source};
+use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
 
 /// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects and near frames.
@@ -71,11 +71,8 @@ impl Synthesizers {
         let outputs = Outputs { depth, ..Outputs::default() };
         let synthesis: Box<dyn Synthesis> = match self.options.pipeline {
             Pipeline::Gather => {
-                let options = Options { depth_pairs: self.pairs, ..Options::default() };
-                let macros = &["BLOOM"][..usize::from(self.bloom)];
-                let hdr = (!self.gl.capabilities().float_render_targets).then_some("NO_FLOAT_TARGETS");
-                let macros: Vec<&'static str> = macros.iter().copied().chain(hdr).collect();
-                Box::new(Gather::with_macros(&self.gl, &options, outputs, &macros)?)
+                let options = Options { depth_pairs: self.pairs, bloom: self.bloom, ..Options::default() };
+                Box::new(Gather::new(&self.gl, &options, outputs)?)
             }
             Pipeline::Paper => self.options.create(&self.gl, outputs)?,
         };
@@ -191,13 +188,12 @@ impl Synthesized {
         // The other eye first: both are finished in the same samples.
         let (to, has_depth) = over.begin(frame, other, &surfaces)?;
         let synthesis = synthesizers.get(has_depth)?;
-        match targets.bloom.as_ref().filter(|_| !is_developed) {
-            Some(bloom) => {
-                let bloom = (bloom.result().raw(), renderer.bloom_strength());
-                synthesis.synthesize_with_bloom(source, bloom, &views.warp, &to)?;
-            }
-            None => synthesis.synthesize(source, &views.warp, &to)?,
-        }
+        source.bloom = targets
+            .bloom
+            .as_ref()
+            .filter(|_| !is_developed)
+            .map(|bloom| Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() });
+        synthesis.synthesize(source, &views.warp, &to)?;
         over.finish(frame, other, &surfaces);
         self.measure(frame, &views)?;
         let Some(Made { targets, over, .. }) = &mut self.made else { return Ok(()) };
