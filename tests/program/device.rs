@@ -103,7 +103,7 @@ fn a_saved_log_is_a_table_and_a_capture() {
     // Via standard input: a log with a line that is cut off, an unknown key, and bytes that are not text.
     let mut bytes = fs::read(RECORDED).unwrap();
     let text = String::from_utf8(bytes.clone()).unwrap();
-    let seventh = text.find("v=1,t=7.0s").unwrap();
+    let seventh = text.find("v=2,t=7.0s").unwrap();
     bytes.splice(seventh + 60..seventh + 70, *b"\xff\xfe\n");
     let more =
         text.lines().find(|line| line.contains("t=12.0s,method")).unwrap().replace("t=12.0s", "t=13.0s");
@@ -167,7 +167,7 @@ case "$*" in
     *"am start"*) run=$(echo "$*" | sed 's/.*--es run \([^ ]*\).*/\1/')
         n=1; lines=4; [ -e "$here/slow" ] && lines=2
         while [ $n -le $lines ]; do sed "s/t=1.0s/t=$n.0s/; s/^17000000000/170000000$n/; s/RUN/$run/" "$here/line"; n=$((n+1)); done >> "$here/log"
-        [ -e "$here/slow" ] || echo 'v=1,summary=1,t=4.0s' >> "$here/log"
+        [ -e "$here/slow" ] || echo 'v=2,summary=1,t=4.0s' >> "$here/log"
         echo 'Status: ok' ;;
 esac
 "#;

@@ -29,7 +29,7 @@ fn no_output_replaces_an_input() {
         ("study.json", RATINGS),
         (
             "log.txt",
-            "rating,v=1,participant=P1,trial=1,method=yoro,pipeline=gather,scene=street,question=q,value=3.0\n",
+            "rating,v=2,participant=P1,trial=1,method=yoro,pipeline=gather,scene=street,question=q,value=3.0\n",
         ),
         ("results.md", "{}\n"),
         ("data/prototype/group/000000.json", "[{\"position\": [0, 1.6, 2], \"target\": [0, 1.2, 0]}]"),

@@ -213,10 +213,6 @@ fn options_without_effect_are_refused() {
             "view --png v.png --set frame-rate=half --set near-field=2",
             ["near-field and frame-rate=half do not go together", "leave one of them out"],
         ),
-        (
-            "view --png v.png --set frame-rate=half --set pipeline=paper",
-            ["pipeline=paper and frame-rate=half do not go together", "leave one of them out"],
-        ),
     ] {
         run(dir.path(), line).refuses(&naming);
     }

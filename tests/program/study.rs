@@ -30,7 +30,7 @@ fn from_a_plan_to_a_verdict() {
 
     // The log that a viewer would write, among other lines of a log.
     let mut log =
-        String::from("--------- beginning of main\n11-21 10:00:00.000  1  1 I YORO    : v=1,t=1.0s\n");
+        String::from("--------- beginning of main\n11-21 10:00:00.000  1  1 I YORO    : v=2,t=1.0s\n");
     let scenes: BTreeMap<&str, usize> = [("street", 0), ("atrium", 1), ("talk", 2)].into();
     for (line, trial) in csv.lines().skip(1).zip(trials) {
         let cells: Vec<&str> = line.split(',').collect();
@@ -45,7 +45,7 @@ fn from_a_plan_to_a_verdict() {
         let value = rating(participant[1..].parse().unwrap(), method, scenes[scene]);
         let _ = writeln!(
             log,
-            "11-21 10:00:01.000  1  1 I YORO    : rating,v=1,participant={participant},trial={},method={method},\
+            "11-21 10:00:01.000  1  1 I YORO    : rating,v=2,participant={participant},trial={},method={method},\
              pipeline=na,scene={scene},question=image-quality,value={value:.1}",
             cells[1]
         );

@@ -835,7 +835,7 @@ fn the_runtime_makes_the_frames_between_of_motion_vectors() {
     }
 }
 
-/// A jump is no motion, and a runtime without extensions leaves the frames to the viewer.
+/// A jump is no motion, and with a runtime without extensions every frame is rendered.
 #[test]
 fn jumps_are_not_extrapolated() {
     let events = vec![event(At::Frame(8), What::Recenter(30.0))];
@@ -863,6 +863,7 @@ fn jumps_are_not_extrapolated() {
     let simulated = Simulated::new(&Script { missing_extensions, ..Script::default() });
     let run = simulated.succeed("--frames 4 --set frame-rate=half --json");
     assert_eq!(run.json()["makes-frames"], Value::Null);
+    assert!(run.stderr.contains("frame-rate=half needs a headset whose runtime"), "{}", run.stderr);
     assert!(simulated.views().iter().all(|(_, views)| views[0].synthesis.is_none()));
 }
 

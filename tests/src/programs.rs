@@ -6,9 +6,8 @@ use std::rc::Rc;
 use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
-use yoro::eyes::GuardBand;
 use yoro::opengl::{
-    AnyView, Composer, Extrapolator, Gather, GlState, GuessedDepth, Motion, Options, Outputs,
+    AnyView, Composer, Gather, GlState, GuessedDepth, Motion, Options, Outputs,
 };
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
@@ -65,9 +64,6 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         AnyView::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
         Motion::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
     }
-    for depth_pairs in [false, true] {
-        Extrapolator::new(gl, &Options { depth_pairs, ..Options::default() })?;
-    }
     Composer::new(gl, GlState::Leave, false)?;
     if variants == Variants::Every {
         let sources = [(true, false, false), (false, true, false), (true, true, false), (false, false, true)];
@@ -101,11 +97,7 @@ fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> any
     let mut renderer = Renderer::new(gl, settings, scene)?;
     for method in Method::ALL {
         if is_tested(method, settings, gl) {
-            let options = StereoOptions {
-                near_field: Some(1.0),
-                guard_band: GuardBand::AUTO,
-                ..StereoOptions::default()
-            };
+            let options = StereoOptions { near_field: Some(1.0), ..StereoOptions::default() };
             stereo::create(gl, method, settings, &options)?.prepare(&mut renderer, scene)?;
         }
     }

@@ -50,7 +50,7 @@ fn lines(run: &Run) -> Vec<Line> {
     let lines: Vec<_> = run
         .summary
         .log_of("YORO")
-        .filter(|text| text.starts_with("v=1,") && !text.contains("summary="))
+        .filter(|text| text.starts_with("v=2,") && !text.contains("summary="))
         .collect();
     lines.iter().map(|line| line.parse().unwrap_or_else(|error| panic!("{line}: {error}"))).collect()
 }
@@ -351,7 +351,7 @@ fn a_session_ends_by_itself() {
         return;
     };
     run.assert_clean();
-    assert_eq!(run.summary.log_of("YORO").filter(|text| text.starts_with("v=1,summary=1,")).count(), 1);
+    assert_eq!(run.summary.log_of("YORO").filter(|text| text.starts_with("v=2,summary=1,")).count(), 1);
 }
 
 #[test]

@@ -104,7 +104,7 @@ impl Case {
         };
         let [x, y] = [0, 1].map(|i| picture.origin[i] as usize + place[i] as usize);
         let depth = f64::from(depth[y * picture.image_size[0] as usize + x]);
-        let warp = &level.views.warp;
+        let warp = level.synthesis_views(GuardBand::None).unwrap().warp;
         let from_border = place[0] - 0.5 - warp.law.displacement(depth) + 0.5;
         let inside = from_border.min(f64::from(warp.source_size[0]) - from_border);
         (inside.abs() > 0.01).then_some(if inside > 0.0 { share } else { 0.0 })
@@ -181,7 +181,6 @@ pub fn eyes(size: [u32; 2], dominant: Eye, convention: DepthConvention) -> EyePa
 /// larger images, with and without depth.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    let guard = GuardBand::Distance(1.0);
     for (i, dominant) in Eye::BOTH.into_iter().enumerate() {
         let convention = [DepthConvention::Standard, DepthConvention::Reversed][i];
         let own = eyes([121, 110], dominant, convention);
@@ -198,7 +197,7 @@ pub fn cases() -> Vec<Case> {
             ("gaze at the border", own, Some(medium), Gaze::Direction(aside)),
             ("other rows", shifted, Some(faded), Gaze::Direction(aside)),
         ] {
-            let levels = eyes.levels(foveation.as_ref(), gaze, guard).unwrap();
+            let levels = eyes.stereo_views(foveation.as_ref(), gaze).unwrap();
             for eye in Eye::BOTH {
                 for with_depth in [false, true] {
                     let seed = cases.len() as u64 / 2 + u64::from(with_depth);

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
-use yoro::eyes::{Eye, EyeOptions, EyePair, GuardBand, Ndc};
+use yoro::eyes::{Eye, EyeOptions, EyePair, Ndc};
 use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_assets::{Motion, Scene, ShadingStyle};
 use yoro_bench::bench::Contender;
@@ -14,7 +14,7 @@ use yoro_gl::{
     ShaderSource, Shape, Texture,
 };
 use yoro_render::stereo::{
-    self, DepthTarget, FramesBetween, Method, MotionTarget, NearFieldPolicy, Pipeline, StereoFrame,
+    self, DepthTarget, Method, MotionTarget, NearFieldPolicy, Pipeline, StereoFrame,
     StereoOptions,
 };
 use yoro_render::{DepthCopy, DepthResolve, PASSES, PreparedScene, RenderSettings, TilePart};
@@ -45,7 +45,6 @@ fn passes_do_what_they_declare() {
                 let settings = RenderSettings { msaa, shadow_map_size: 64, ..RenderSettings::default() };
                 let mut scene = scene::every_material(style);
                 scene::keep_plain_and_full(&mut scene);
-                // An automatic guard band is drawn whole where something moves.
                 if style == ShadingStyle::Anime {
                     move_squares(&mut scene);
                 }
@@ -88,12 +87,9 @@ fn frames() -> Vec<(Method, StereoOptions)> {
     let mut frames: Vec<_> = methods.filter_map(Contender::method).collect();
     let synthesis = StereoOptions { policy: None, ..StereoOptions::default() };
     for method in [Method::Conventional, Method::Synthesized] {
-        for frames_between in [FramesBetween::Method, FramesBetween::Runtime] {
-            frames.push((method, StereoOptions { frames_between, ..synthesis }));
-        }
+        frames.push((method, StereoOptions { motion_vectors: true, ..synthesis }));
     }
     frames.push((Method::Synthesized, StereoOptions { near_field: Some(3.0), ..synthesis }));
-    frames.push((Method::Synthesized, StereoOptions { guard_band: GuardBand::Auto(0.1), ..synthesis }));
     frames
         .push((Method::Synthesized, StereoOptions { policy: Some(NearFieldPolicy::default()), ..synthesis }));
     frames
@@ -110,8 +106,7 @@ fn move_squares(scene: &mut Scene) {
     scene.motion = Motion { loops: vec![1.0], nodes, meshes, ..Motion::default() };
 }
 
-/// Returns what a method's third frame does, plainly, with depth for a compositor, and with motion vectors; and what it does
-/// to show that frame again.
+/// Returns what a method's third frame does, plainly, with depth for a compositor, and with motion vectors.
 fn record(
     gl: &Rc<Context>,
     recorder: &Recorder,
@@ -142,9 +137,6 @@ fn record(
         }
         recorder.start();
         method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).unwrap();
-        if options.frames_between == FramesBetween::Method {
-            assert!(method.show_again(&pair, &to, 0.5).unwrap());
-        }
         all.extend(pieces(&recorder.take(), &Assumed::default()));
     }
     all
@@ -215,10 +207,10 @@ fn a_record_says_what_was_drawn() {
         draw();
         assert_eq!(recorder.take(), [], "only what comes after the start");
         recorder.start();
-        gl.within_columns(Some([2, 5]), draw);
+        draw();
         let commands = recorder.take();
         let [Command::Draw(drawn)] = &commands[..] else { panic!("{commands:?}") };
-        assert_eq!((drawn.pass, drawn.area, drawn.shape), ("smooth", [3, 4], Shape::Screen));
+        assert_eq!((drawn.pass, drawn.area, drawn.shape), ("smooth", [8, 4], Shape::Screen));
         assert_eq!(drawn.program.files, ["screen.vert", "render/bloom_down.frag"]);
         let images = drawn.target.as_ref().unwrap();
         assert_eq!((images.color[0].size, images.depth.unwrap().format), ([8, 4], Format::Depth24));
@@ -226,7 +218,7 @@ fn a_record_says_what_was_drawn() {
         assert_eq!((name.as_str(), image.size), ("source", [16, 2]));
         assert!(!drawn.uses_depth && !drawn.blends);
         let counts = gl.capabilities().api == GlApi::Desktop;
-        assert_eq!(drawn.samples_passed, counts.then_some(3 * 4));
+        assert_eq!(drawn.samples_passed, counts.then_some(8 * 4));
         Ok(())
     });
     done.unwrap();

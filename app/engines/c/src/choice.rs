@@ -219,12 +219,12 @@ impl YoroFrameEnd {
 
 impl YoroChoice {
     fn of(chooser: &Chooser) -> YoroChoice {
-        let Choice { way, reason, costs_ms } = chooser.choice();
+        let Choice { path, reason, costs_ms } = chooser.choice();
         YoroChoice {
             struct_size: size_of::<YoroChoice>() as u32,
-            next: chooser.way().index() as YoroWay,
+            next: chooser.path().index() as YoroWay,
             is_measuring: chooser.is_measuring().into(),
-            chosen: way.index() as YoroWay,
+            chosen: path.index() as YoroWay,
             reason: match reason {
                 Reason::Unmeasured => YORO_REASON_UNMEASURED,
                 Reason::Cheaper => YORO_REASON_CHEAPER,

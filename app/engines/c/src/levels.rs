@@ -1,7 +1,9 @@
 //! The levels of a foveated view, and how an eye is composed of them.
 
 use glam::Vec3;
-use yoro::eyes::{Composition, Eye, EyePair, Foveation, FoveationLevel, Gaze, InsetPlace, LevelPlace};
+use yoro::eyes::{
+    Composition, Eye, EyePair, Foveation, FoveationLevel, Gaze, InsetPlace, LevelPlace, ViewLayer,
+};
 
 use crate::eyes::YoroEyes;
 use crate::result::{Failure, YORO_ERROR_NULL, YoroResult, catch_errors};
@@ -154,12 +156,12 @@ impl YoroFoveation {
             other => return Err(Failure::value(format!("tracked is {other}: give 0 or 1"))),
         };
         let guard = guard_band(eyes.guard_band);
-        let levels = own.pair.levels(foveation.as_ref(), gaze, guard)?;
+        let levels = own.pair.stereo_views(foveation.as_ref(), gaze)?;
         let wide = own.with_matrices(views(levels.wide.eyes, guard, own.rows_down)?);
-        let inset = match levels.inset.zip(foveation) {
-            Some((level, foveation)) => {
-                let inset = |pair: &EyePair| pair.inset_views(foveation.nearest);
-                own.with_matrices(views_by(level.eyes, own.rows_down, inset)?)
+        let inset = match levels.inset {
+            Some(layer) => {
+                let inset = |pair: &EyePair| ViewLayer { eyes: *pair, ..layer }.synthesis_views(guard);
+                own.with_matrices(views_by(layer.eyes, own.rows_down, inset)?)
             }
             None => YoroViews::default(),
         };

@@ -49,20 +49,21 @@ fn levels_are_the_cores_with_rows_from_either_end() {
     let foveation = FoveationLevel::Medium.foveation();
     let tracked = YoroFoveation { tracked: 1, gaze: gaze.to_array(), ..medium() };
     for (given, gaze) in [(medium(), Gaze::Axes(pair.axes())), (tracked, Gaze::Direction(gaze))] {
-        let core = pair.levels(foveation.as_ref(), gaze, GuardBand::Distance(1.0)).unwrap();
+        let core = pair.stereo_views(foveation.as_ref(), gaze).unwrap();
         for rows in [YORO_ROWS_UP, YORO_ROWS_DOWN] {
             let (wide, inset, compositions) = levels_of(&YoroEyes { rows, ..own }, &given).unwrap();
             for (views, level) in [(&wide, core.wide), (&inset, core.inset.unwrap())] {
-                assert_eq!([views.source.width, views.source.height], level.views.source.size);
+                let core = level.synthesis_views(GuardBand::Distance(1.0)).unwrap();
+                assert_eq!([views.source.width, views.source.height], core.source.size);
                 assert_eq!([views.rendered.width, views.rendered.height], level.eyes.size);
                 let crop = match rows {
-                    YORO_ROWS_UP => level.views.dominant_crop,
-                    _ => level.views.dominant_crop_from_top(),
+                    YORO_ROWS_UP => core.dominant_crop,
+                    _ => core.dominant_crop_from_top(),
                 };
                 assert_eq!([views.crop_x, views.crop_y], crop);
-                assert!((views.source.fov.angle_left.tan() - level.views.source.frustum.left).abs() < 1e-5);
-                assert!((views.source.fov.angle_up.tan() - level.views.source.frustum.top).abs() < 1e-5);
-                assert!((views.warp.offset - level.views.warp.law.offset).abs() < 1e-3);
+                assert!((views.source.fov.angle_left.tan() - core.source.frustum.left).abs() < 1e-5);
+                assert!((views.source.fov.angle_up.tan() - core.source.frustum.top).abs() < 1e-5);
+                assert!((views.warp.offset - core.warp.law.offset).abs() < 1e-3);
             }
             for (eye, own) in Eye::BOTH.into_iter().zip(compositions) {
                 let core = core.composition(eye);

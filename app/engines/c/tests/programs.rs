@@ -491,7 +491,7 @@ fn the_kit_and_the_core_compose_the_same_eye() {
         };
         let foveation = Foveation { radius: 0.35, ..Foveation::MEDIUM };
         let gaze = Gaze::Direction(glam::Vec3::new(0.2, -0.1, -1.0));
-        let levels = eyes.levels(Some(&foveation), gaze, GuardBand::Distance(1.0)).unwrap();
+        let levels = eyes.stereo_views(Some(&foveation), gaze).unwrap();
         let places = LevelPlaces {
             target: [7, 9],
             wide: [3, 5],

@@ -13,7 +13,7 @@ use glow::HasContext;
 use image::{Rgb, RgbImage};
 use yoro::eyes::{
     DepthConvention, DepthRange, Eye, EyePair, FoveationLevel, Frustum, Gaze, GuardBand, MEAN_IPD, Pose,
-    View, ViewLayer,
+    SynthesisViews, View, ViewLayer,
 };
 use yoro::opengl::{
     Composer, Context, Destination, Gather, GlState, InsetImage, LevelImage, LevelImages, Options, Outputs,
@@ -92,7 +92,8 @@ fn save(left: &RgbImage, right: &RgbImage, path: &Path) -> Result<(), Box<dyn Er
 
 /// A level's view with the images of both eyes: the rendered one, and the synthesized one.
 struct Rendered {
-    level: ViewLayer,
+    layer: ViewLayer,
+    views: SynthesisViews,
     source: Image,
     other: Image,
 }
@@ -100,10 +101,10 @@ struct Rendered {
 impl Rendered {
     /// Returns an eye's own image. Of the rendered eye it is a part of what was rendered.
     fn image(&self, eye: Eye) -> LevelImage {
-        if eye != self.level.eyes.dominant {
+        if eye != self.layer.eyes.dominant {
             return LevelImage::new(self.other.color);
         }
-        let part = Part { origin: self.level.origin(eye), image_size: self.level.views.source.size };
+        let part = Part { origin: self.views.dominant_crop, image_size: self.views.source.size };
         LevelImage { color: self.source.color, part: Some(part) }
     }
 }
@@ -118,17 +119,18 @@ fn foveated(
     let composer = Composer::new(gl, GlState::Leave, false)?;
     // Each frame, with the direction of an eye tracker, if there is one: sizes stay.
     let gaze = Gaze::Axes(pair.axes());
-    let levels = pair.levels(strength.foveation().as_ref(), gaze, GuardBand::Distance(1.0))?;
-    let render = |level: ViewLayer| -> Result<Rendered, Box<dyn Error>> {
-        let source = engine.create_image(level.views.source.size)?;
-        engine.draw(&level.views.source, &source);
-        let other = engine.create_image(level.eyes.size)?;
+    let levels = pair.stereo_views(strength.foveation().as_ref(), gaze)?;
+    let render = |layer: ViewLayer| -> Result<Rendered, Box<dyn Error>> {
+        let views = layer.synthesis_views(GuardBand::Distance(1.0))?;
+        let source = engine.create_image(views.source.size)?;
+        engine.draw(&views.source, &source);
+        let other = engine.create_image(layer.eyes.size)?;
         // In an engine each level keeps its pipeline, whose buffers then keep their size.
         let outputs = Outputs { depth: true, ..Outputs::default() };
         let mut gather = Gather::new(gl, &Options::default(), outputs)?;
-        let to = whole(&other, level.eyes.size);
-        gather.synthesize(Source::new(source.color, source.depth), &level.views.warp, &to)?;
-        Ok(Rendered { level, source, other })
+        let to = whole(&other, layer.eyes.size);
+        gather.synthesize(Source::new(source.color, source.depth), &views.warp, &to)?;
+        Ok(Rendered { layer, views, source, other })
     };
     let (wide, inset) = (render(levels.wide)?, levels.inset.map(render).transpose()?);
     // Transparent objects are drawn here, into each level of each eye.
@@ -145,7 +147,7 @@ fn foveated(
     save(&left, &right, &Path::new("out").join(format!("engine-{}.png", strength.name())))?;
     let pixels = |[width, height]: [u32; 2]| f64::from(width) * f64::from(height);
     let levels = [Some(&wide), inset.as_ref()].into_iter().flatten();
-    let rendered: f64 = levels.map(|rendered| pixels(rendered.level.views.source.size)).sum();
+    let rendered: f64 = levels.map(|rendered| pixels(rendered.views.source.size)).sum();
     engine.draw(&pair.view(Eye::Left), &shown);
     println!(
         "{:.3} of two eyes' pixels rendered; against the left eye rendered with all pixels: {:.2} dB",

@@ -135,8 +135,6 @@ pub struct Context {
     texture_bytes: Cell<usize>,
     /// The number of textures that were deleted: their names may come again.
     deleted_textures: Cell<u64>,
-    /// The argument of [`Context::within_columns`].
-    columns: Cell<Option<[u32; 2]>>,
     empty_vertex_array: glow::VertexArray,
     observer: RefCell<Option<Box<dyn Observer>>>,
     /// The last field, since fields are dropped in order of declaration.
@@ -257,7 +255,6 @@ impl Context {
             objects: Cell::new(0),
             texture_bytes: Cell::new(0),
             deleted_textures: Cell::new(0),
-            columns: Cell::new(None),
             empty_vertex_array,
             observer: RefCell::default(),
             _owner: owner,

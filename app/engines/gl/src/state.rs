@@ -5,7 +5,6 @@ use glow::HasContext;
 use crate::{Context, Event};
 
 /// More rows than any framebuffer has.
-const TALLEST: i32 = 1 << 20;
 
 /// The depth test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,8 +51,7 @@ impl RasterState {
 }
 
 impl Context {
-    /// Sets depth test, blending and culling. Turns off the stencil test and dithering, and turns on all writes. The
-    /// scissor test is off, except within [`Context::within_columns`].
+    /// Sets depth test, blending and culling. Turns off scissor test, stencil test and dithering, and turns on all writes.
     pub fn set_raster_state(&self, state: &RasterState) {
         self.tell(Event::StateSet(*state));
         let gl = self.raw();
@@ -78,28 +76,10 @@ impl Context {
                 }
             }
             toggle(glow::CULL_FACE, state.cull);
-            toggle(glow::SCISSOR_TEST, self.columns.get().is_some());
-            if let Some([first, end]) = self.columns.get() {
-                gl.scissor(first as i32, 0, end.saturating_sub(first) as i32, TALLEST);
-            }
+            gl.disable(glow::SCISSOR_TEST);
             gl.disable(glow::STENCIL_TEST);
             gl.disable(glow::DITHER);
         }
-    }
-
-    /// Runs `body` with all draws limited to the columns from `first` up to, but not including, `end`, counted from the
-    /// left; `None` for all columns. `body` must set its state by [`Context::set_raster_state`]. Clearing is not
-    /// limited.
-    pub fn within_columns<R>(&self, columns: Option<[u32; 2]>, body: impl FnOnce() -> R) -> R {
-        let before = self.columns.replace(columns);
-        let result = body();
-        self.columns.set(before);
-        result
-    }
-
-    /// Returns the columns that [`Context::within_columns`] currently limits draws to.
-    pub fn columns(&self) -> Option<[u32; 2]> {
-        self.columns.get()
     }
 
     /// Limits colour writes to these channels until the state is set again.

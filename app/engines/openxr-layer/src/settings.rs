@@ -93,9 +93,7 @@ pub const SETTINGS: [Setting; 4] = [
         default: "1.0",
         help: "What is rendered beyond both eyes' views: columns of pixels, or as many as objects at that distance need",
         set: |settings, text| {
-            // The view is offered before anything is rendered, so the guard band cannot depend on the scene.
-            let band = GuardBand::from_str(text).ok()?;
-            settings.guard_band = Some(band).filter(|band| !matches!(band, GuardBand::Auto(_)))?;
+            settings.guard_band = GuardBand::from_str(text).ok()?;
             Some(())
         },
     },

@@ -247,7 +247,7 @@ mod tests {
 
     fn line(t: u32, method: &str, fps: &str) -> String {
         format!(
-            "v=1,t={t}.0s,method={method},pipeline=gather,scene=street,FPS={fps}/60,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms,CPU=na,RSS=na,mA_raw=512,mA=-512,mV=3921,level=90%,uAh=na,plug=2,Tbat=31.2C,Tskin=na,thermal=0,headroom=na,scale=1.00,imbuffer=na,frames=60,status=charging,run=loop-2-{method}"
+            "v=2,t={t}.0s,method={method},pipeline=gather,scene=street,FPS={fps}/60,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms,CPU=na,RSS=na,mA_raw=512,mA=-512,mV=3921,level=90%,uAh=na,plug=2,Tbat=31.2C,Tskin=na,thermal=0,headroom=na,scale=1.00,imbuffer=na,frames=60,status=charging,run=loop-2-{method}"
         )
     }
 
@@ -261,17 +261,17 @@ mod tests {
             fs::write(path, text).unwrap();
         };
         let pictures =
-            "pictures,v=1,pipeline=gather,rendered=48.20dB,synthesized=12.71dB,least=30.00dB,passed=false";
+            "pictures,v=2,pipeline=gather,rendered=48.20dB,synthesized=12.71dB,least=30.00dB,passed=false";
         let step = line(1, "yoro", "60.0").replace("run=loop-2-yoro", "run=loop-1-gather");
         put(
             "pilot/husky-34-en-landscape/game_loop_results/results_scenario_1.json",
-            &format!("{pictures}\n{step}\nv=1,summary=1,t=1.0s\n"),
+            &format!("{pictures}\n{step}\nv=2,summary=1,t=1.0s\n"),
         );
         let mut results = String::from("yoro 0.1.0 starts\ngame loop: scenario 2\n");
         for (step, method) in ["conventional", "yoro"].iter().enumerate() {
             let second = |t: u32| line(65 * step as u32 + t, method, ["40.0", "59.0"][step]) + "\n";
             results.extend((1..=65).map(second));
-            results += "v=1,summary=1,t=65.0s\n";
+            results += "v=2,summary=1,t=65.0s\n";
         }
         // The last step was cut off.
         results += &(line(131, "mono", "60.0") + "\n");

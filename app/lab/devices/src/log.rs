@@ -159,20 +159,20 @@ mod tests {
             let e = entry(line);
             (e.pid, e.tag, e.message)
         };
-        let expected = (Some(4242), "YORO", "v=1,t=1.0s");
+        let expected = (Some(4242), "YORO", "v=2,t=1.0s");
         for line in [
-            "1700000000.123456  4242  4260 I YORO    : v=1,t=1.0s",
-            "1700000000.123  4242  4260 I YORO: v=1,t=1.0s",
-            "11-14 22:13:20.123  4242  4260 I YORO    : v=1,t=1.0s",
-            "2023-11-14 22:13:20.123456 +0100  4242  4260 I YORO    : v=1,t=1.0s\r",
-            "11-14 22:13:20.123 I/YORO    ( 4242): v=1,t=1.0s",
-            "I/YORO    ( 4242): v=1,t=1.0s",
-            "11-14 22:13:20.123: I/YORO(4242): v=1,t=1.0s",
-            "         1700000000.123  4242  4260 I YORO    : v=1,t=1.0s",
+            "1700000000.123456  4242  4260 I YORO    : v=2,t=1.0s",
+            "1700000000.123  4242  4260 I YORO: v=2,t=1.0s",
+            "11-14 22:13:20.123  4242  4260 I YORO    : v=2,t=1.0s",
+            "2023-11-14 22:13:20.123456 +0100  4242  4260 I YORO    : v=2,t=1.0s\r",
+            "11-14 22:13:20.123 I/YORO    ( 4242): v=2,t=1.0s",
+            "I/YORO    ( 4242): v=2,t=1.0s",
+            "11-14 22:13:20.123: I/YORO(4242): v=2,t=1.0s",
+            "         1700000000.123  4242  4260 I YORO    : v=2,t=1.0s",
         ] {
             assert_eq!(of(line), expected, "{line}");
         }
-        assert_eq!(of("v=1,t=1.0s"), (None, "YORO", "v=1,t=1.0s"));
+        assert_eq!(of("v=2,t=1.0s"), (None, "YORO", "v=2,t=1.0s"));
         assert_eq!(of("FPS=72/72,Prd=38ms").1, "VrApi");
         assert_eq!(of("11-14 22:13:20.123  1  2 E AndroidRuntime: FATAL: a (b): c").2, "FATAL: a (b): c");
         assert_eq!(of("11-14 22:13:20.123  1  2 E libc:").2, "");

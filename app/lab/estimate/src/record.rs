@@ -106,14 +106,10 @@ impl State {
         }
     }
 
-    fn draw(&self, gl: &Context, shape: Shape) -> Option<Draw> {
+    fn draw(&self, shape: Shape) -> Option<Draw> {
         let (raw, program) = self.program.as_ref()?;
         let mut textures: Vec<_> = self.textures.get(raw).into_iter().flatten().collect();
         textures.sort_by_key(|(name, _)| *name);
-        let drawn = |[width, height]: [u32; 2]| match gl.columns() {
-            Some([first, end]) => [end.min(width).saturating_sub(first), height],
-            None => [width, height],
-        };
         let raster = self.raster.unwrap_or(RasterState::SCREEN);
         let uses_depth = raster.depth != DepthTest::Off;
         Some(Draw {
@@ -121,8 +117,8 @@ impl State {
             program: program.clone(),
             target: self.target(self.framebuffer),
             textures: textures.into_iter().map(|(name, image)| (name.clone(), *image)).collect(),
-            area: drawn(self.viewport),
-            view: drawn(self.view.unwrap_or(self.viewport)),
+            area: self.viewport,
+            view: self.view.unwrap_or(self.viewport),
             shape,
             blends: raster.blend != Blend::Off,
             uses_depth,
@@ -134,7 +130,7 @@ impl State {
 
     /// Records a draw call, and begins to count its samples.
     fn begin_draw(&mut self, gl: &Context, shape: Shape) {
-        let Some(draw) = self.draw(gl, shape).filter(|_| self.records) else { return };
+        let Some(draw) = self.draw(shape).filter(|_| self.records) else { return };
         // OpenGL ES only tells whether any sample has passed.
         if gl.capabilities().api == GlApi::Desktop {
             // SAFETY: the query is deleted by `Recorder::take`. None of this target is active, since each ends with its draw

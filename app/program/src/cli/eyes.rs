@@ -77,7 +77,6 @@ impl EyeArgs {
         let guard = match guard {
             GuardBand::None => "no guard band".to_owned(),
             GuardBand::Distance(z) => format!("guard band complete from {z} m"),
-            GuardBand::Auto(z) => format!("guard band as wide as it must be, complete from {z} m at most"),
             GuardBand::Pixels(n) => format!("guard band of {n} pixels"),
         };
         format!(

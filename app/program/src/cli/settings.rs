@@ -312,15 +312,11 @@ impl SettingsArgs {
         let hud = self.no_hud.then(|| "hud=false".to_owned());
         let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
         let settings = defaults.changed(self.settings.as_deref(), overrides)?;
-        if settings.frame_rate != FrameRate::Full {
-            let near_field = settings.near_field.is_some().then_some("near-field");
-            let paper = (settings.pipeline == Pipeline::Paper).then_some("pipeline=paper");
-            if let Some(other) = near_field.or(paper) {
-                bail!(
-                    "{other} and frame-rate={} do not go together: leave one of them out",
-                    settings.frame_rate.name()
-                );
-            }
+        if settings.frame_rate != FrameRate::Full && settings.near_field.is_some() {
+            bail!(
+                "near-field and frame-rate={} do not go together: leave one of them out",
+                settings.frame_rate.name()
+            );
         }
         Ok(settings)
     }

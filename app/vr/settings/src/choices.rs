@@ -123,9 +123,9 @@ choices! {
         /// Every frame
         #[default]
         Full = "full",
-        /// Every second one
+        /// Every second one, where a headset's runtime makes the others
         Half = "half",
-        /// Every second one while the full rate is missed, where a headset's runtime makes the others
+        /// Every second one while the full rate is missed
         Auto = "auto",
     }
 

@@ -128,10 +128,9 @@ settings! {
         range(|s| (1..=MAX_KERNEL_HEIGHT).contains(&s.kernel_height), "give 1 to 15 rows"),
     /// paper: whole source columns and one depth sample per ImBuffer pixel, as the text says.
     "strict" strict: bool = false,
-    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), `auto:METRES`, or complete from a distance in
-    /// metres (`1.0`).
+    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), or complete from a distance in metres (`1.0`).
     "guard-band" guard_band: Option<GuardBand> = None;
-        value_name("none|Npx|METRES|auto");
+        value_name("none|Npx|METRES");
         auto("1.0; paper: none"),
     /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
     "near-field" near_field: Option<f32> = None;
@@ -140,9 +139,8 @@ settings! {
     /// Switch to two real renders while most of the view is too near.
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),
-    /// yoro and conventional: render every second frame only. The headset's runtime makes the others of colour, depth and
-    /// motion vectors; where it does not, the viewer does, at the newest head pose. `method=auto` then means `yoro`, without
-    /// near field, the switch to two renders and the paper's pipeline.
+    /// Headsets whose runtime makes frames from colour, depth and motion vectors: with yoro and conventional, without near
+    /// field, render every second frame and leave the others to the runtime.
     "frame-rate" frame_rate: FrameRate = FrameRate::default(),
     /// hybrid: the far field starts where the eyes' disparity is this many pixels.
     "split-disparity" split_disparity: f32 = 1.0;

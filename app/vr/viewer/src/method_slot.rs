@@ -11,7 +11,7 @@ use yoro::choice::Cost;
 use yoro::eyes::Foveation;
 use yoro_gl::{Context, GlError};
 use yoro_render::stereo::{
-    Auto, EyeLevels, FramesBetween, GuardBandUse, ImBufferSize, LevelTargets, Method, MethodChoice, Pipeline,
+    Auto, EyeLevels, ImBufferSize, LevelTargets, Method, MethodChoice, Pipeline,
     SelectedMethod, StereoMethod as _, StereoOptions, Substituted,
 };
 use yoro_settings::{FrameRate, Settings};
@@ -33,11 +33,6 @@ pub(crate) struct MethodSlot {
     made: Option<SelectedMethod>,
     /// True while both eyes are rendered for a comparison with the method.
     is_comparing: bool,
-    /// Time of the last frame that was rendered, while that frame may be shown again, and of the step before it.
-    rendered_ns: Option<i64>,
-    step_ns: Option<i64>,
-    /// True if the last frame was shown again.
-    was_shown_again: bool,
     /// True if the display's runtime makes the frames between those that are rendered.
     runtime_makes_frames: bool,
     /// True if the display's runtime shows insets, whatever the settings say since its session began.
@@ -58,9 +53,6 @@ impl MethodSlot {
             substituted: None,
             made: None,
             is_comparing: false,
-            rendered_ns: None,
-            step_ns: None,
-            was_shown_again: false,
             runtime_makes_frames: false,
             runtime_shows_insets: false,
             rate: RateChooser::default(),
@@ -140,9 +132,7 @@ impl MethodSlot {
     /// Returns the settings' options with the pipeline and the ImBuffer in use.
     fn options(&self, settings: &Settings) -> StereoOptions {
         let mut options = stereo_options(settings, self.pipeline);
-        if self.runtime_makes_frames {
-            options.frames_between = FramesBetween::Runtime;
-        }
+        options.motion_vectors = self.runtime_makes_frames;
         if self.runtime_shows_insets {
             options.inset = options.inset.or(Some(Foveation::MEDIUM.nearest));
         }
@@ -166,7 +156,6 @@ impl MethodSlot {
 
     /// Compiles the chosen method, if there is a context with a scene.
     pub fn make(&mut self, gl: Option<&Rc<Context>>, settings: &Settings) -> Result<(), GlError> {
-        self.forget_render();
         if let Some(gl) = gl {
             self.made = Some(self.create(gl, settings)?);
         }
@@ -262,54 +251,19 @@ impl MethodSlot {
         self.made.as_ref().is_some_and(|made| made.report().has_motion)
     }
 
-    /// Forgets what was rendered: after a jump, nothing is where it would have moved to.
-    fn forget_render(&mut self) {
-        (self.rendered_ns, self.step_ns, self.was_shown_again) = (None, None, false);
-    }
-
-    /// Shows the last render again if the settings ask for half the rate, this is the frame between two renders, and the
-    /// method can. Returns true if so; otherwise the frame must be rendered.
-    pub fn show_again(
-        &mut self,
-        settings: &Settings,
-        now_ns: i64,
-        levels: &EyeLevels,
-        to: &LevelTargets,
-    ) -> Result<bool, ViewerError> {
-        if settings.frame_rate != FrameRate::Half || self.runtime_makes_frames {
-            return Ok(false);
-        }
-        if let (false, false, Some(rendered_ns)) = (self.is_comparing, self.was_shown_again, self.rendered_ns)
-        {
-            let made = self.made.as_mut().ok_or(ViewerError::NoContext)?;
-            let past = (now_ns - rendered_ns) as f32;
-            let ahead = self.step_ns.map_or(0.0, |step| (past / step as f32).clamp(0.0, 1.0));
-            if made.show_levels_again(levels, to, ahead)? {
-                self.was_shown_again = true;
-                return Ok(true);
-            }
-        }
-        let step = self.rendered_ns.map(|rendered_ns| now_ns - rendered_ns).filter(|step| *step > 0);
-        self.forget_render();
-        if !self.is_comparing {
-            (self.rendered_ns, self.step_ns) = (Some(now_ns), step);
-        }
-        Ok(false)
-    }
-
-    /// Renders both eyes of all levels. Returns the use of the guard band, if there is anything to say about it.
+    /// Renders both eyes of all levels.
     pub fn render(
         &mut self,
         shown: &mut Shown,
         levels: &EyeLevels,
         to: &LevelTargets,
-    ) -> Result<Option<GuardBandUse>, ViewerError> {
+    ) -> Result<(), ViewerError> {
         let made = self.made.as_mut().ok_or(ViewerError::NoContext)?;
         made.compare(self.is_comparing)?;
         made.render_levels(&mut shown.renderer, &shown.scene, levels, to)?;
         let report = made.report();
         self.tell(report.substituted);
-        Ok(report.guard_band)
+        Ok(())
     }
 
     /// Logs the reason for rendering both eyes, if it is another one than before.
@@ -347,7 +301,6 @@ impl MethodSlot {
 
     /// Makes an automatic choice measure again, after a change of the viewpoint or the resolution.
     pub fn measure_again(&mut self) {
-        self.forget_render();
         self.rate.interrupt();
         if let Some(auto) = self.made.as_mut().and_then(SelectedMethod::auto_mut) {
             auto.scene_changed();
@@ -384,7 +337,6 @@ impl MethodSlot {
 
     /// Forgets the frames counted so far, which no longer describe the load after a pause.
     pub fn interrupt(&mut self) {
-        self.forget_render();
         self.rate.interrupt();
         self.controller.restart();
     }

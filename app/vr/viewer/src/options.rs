@@ -3,9 +3,9 @@
 use yoro_gl::Capabilities;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{
-    FramesBetween, NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions,
+    NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions,
 };
-use yoro_settings::{FrameRate, MSAA, Settings};
+use yoro_settings::{MSAA, Settings};
 
 /// Returns the renderer's settings for those of the viewer. If the driver is known and lacks the number of samples, it is
 /// the next smaller one that the driver has.
@@ -36,10 +36,8 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
         guard_band: settings.guard_band.unwrap_or(options.guard_band),
         near_field: settings.near_field,
         policy: settings.switch.then(NearFieldPolicy::default),
-        frames_between: match settings.frame_rate {
-            FrameRate::Half => FramesBetween::Method,
-            FrameRate::Full | FrameRate::Auto => FramesBetween::Nobody,
-        },
+        // A display whose runtime makes frames asks for them.
+        motion_vectors: false,
         split_disparity: settings.split_disparity,
         inset: settings.foveation.unwrap_or_default().foveation().map(|foveation| foveation.nearest),
     }
@@ -49,7 +47,7 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
 mod tests {
     use super::*;
 
-    /// Every option of the methods must have a setting.
+    /// Every option of the methods must have a setting, or be the display's.
     #[test]
     fn every_stereo_option_has_a_setting() {
         let changed = Settings::resolve(
@@ -62,7 +60,6 @@ mod tests {
                 "guard-band=40px",
                 "near-field=1",
                 "switch=false",
-                "frame-rate=half",
                 "split-disparity=2.5",
                 "foveation=low",
             ],
@@ -81,6 +78,6 @@ mod tests {
                 _ => (a == b).then(|| path.to_owned()).into_iter().collect(),
             }
         }
-        assert_eq!(unchanged("", &changed, &default), [".synthesis.pipeline"]);
+        assert_eq!(unchanged("", &changed, &default), [".motion-vectors", ".synthesis.pipeline"]);
     }
 }

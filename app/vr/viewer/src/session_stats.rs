@@ -4,7 +4,6 @@ use glam::Quat;
 
 use crate::questionnaire::Questionnaire;
 use yoro_gl::PassTime;
-use yoro_render::stereo::GuardBandUse;
 use yoro_settings::Settings;
 use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
 
@@ -55,11 +54,6 @@ impl SessionStats {
     pub fn frame(&mut self, now_ns: i64, refresh_hz: f32, passes: &[PassTime], timed: u32) -> u32 {
         self.telemetry.gpu(passes.iter().map(|pass| (pass.name, pass.time)), timed);
         self.telemetry.frame(now_ns, refresh_hz)
-    }
-
-    /// Records how a frame used the guard band.
-    pub fn guard_band(&mut self, used: GuardBandUse) {
-        self.telemetry.guard_band(used.columns, used.undrawn);
     }
 
     /// True if a second has passed since the last line.

@@ -49,7 +49,6 @@ export function apply() {
     // A viewer and a headset show both eyes, whatever the screen shows.
     display: app.busy?.immersive ? 'side-by-side' : settings.display,
     foveation: app.busy?.name === 'headset' ? element('headset-foveation').value : 'off',
-    'half-rate': Boolean(app.busy?.immersive) && element(`${app.busy.name}-half`).checked,
   }));
   keep();
   changed();

@@ -7,7 +7,7 @@ use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, FoveationLevel, Gaze, Pos
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{
-    self, FramesBetween, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions,
+    self, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions,
 };
 use yoro_settings::Ipd;
 
@@ -75,8 +75,6 @@ pub struct Settings {
     pub display: Display,
     /// In a headset: how much of each eye is rendered with all pixels.
     pub foveation: FoveationLevel,
-    /// In a viewer or a headset: true if every second frame is made of the render before it.
-    pub half_rate: bool,
 }
 
 impl Default for Settings {
@@ -89,7 +87,6 @@ impl Default for Settings {
             dominant,
             display: Display::SideBySide,
             foveation: FoveationLevel::Off,
-            half_rate: false,
         }
     }
 }
@@ -112,8 +109,7 @@ impl Settings {
     /// much of the view is near, since detecting that would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
         let inset = self.foveation.foveation().map(|foveation| foveation.nearest);
-        let frames_between = if self.half_rate { FramesBetween::Method } else { FramesBetween::Nobody };
-        StereoOptions { policy: None, inset, frames_between, ..StereoOptions::default() }
+        StereoOptions { policy: None, inset, ..StereoOptions::default() }
     }
 
     /// Returns the levels of a headset's eyes; `None` if they are rendered as a whole.

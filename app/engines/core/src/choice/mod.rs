@@ -105,7 +105,7 @@ pub enum Reason {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// The chosen way.
-    pub way: StereoPath,
+    pub path: StereoPath,
     /// The reason for the choice.
     pub reason: Reason,
     /// The compared times in milliseconds, by [`StereoPath::index`]; `None` if there was nothing to compare.
@@ -219,7 +219,7 @@ impl Chooser {
     /// Returns a chooser that begins with the way `first`, and measures as soon as frames come.
     pub fn new(first: StereoPath) -> Chooser {
         Chooser {
-            choice: Choice { way: first, reason: Reason::Unmeasured, costs_ms: None },
+            choice: Choice { path: first, reason: Reason::Unmeasured, costs_ms: None },
             phase: Phase::Settling(None),
             tags: [Tag::Nothing; REMEMBERED],
             frames: 0,
@@ -233,10 +233,10 @@ impl Chooser {
     }
 
     /// Returns the way to render the next frame.
-    pub fn way(&self) -> StereoPath {
+    pub fn path(&self) -> StereoPath {
         match self.phase {
-            Phase::Measuring { turn, .. } if turn % 2 == 1 => self.choice.way.other(),
-            _ => self.choice.way,
+            Phase::Measuring { turn, .. } if turn % 2 == 1 => self.choice.path.other(),
+            _ => self.choice.path,
         }
     }
 
@@ -282,12 +282,12 @@ impl Chooser {
 
     /// Returns what the frame that ends now counts for.
     fn tag(&self, rendered: Option<StereoPath>) -> Tag {
-        if rendered != Some(self.way()) {
+        if rendered != Some(self.path()) {
             return Tag::Nothing;
         }
         match self.phase {
             Phase::Measuring { turn_frames, .. } if turn_frames >= UNCOUNTED_FRAMES => {
-                Tag::Measured(self.way())
+                Tag::Measured(self.path())
             }
             Phase::Resting { .. } => Tag::Watched,
             _ => Tag::Nothing,
@@ -299,8 +299,8 @@ impl Chooser {
         if let Some(ns) = interval {
             let ms = ns as f32 * 1e-6;
             match tag {
-                Tag::Measured(way) => {
-                    self.intervals[way.index()].add(ms);
+                Tag::Measured(path) => {
+                    self.intervals[path.index()].add(ms);
                     self.refresh_hz = end.refresh_hz;
                 }
                 // Without a display's pace, the time between frames says nothing about their cost.
@@ -314,7 +314,7 @@ impl Chooser {
             return;
         }
         match self.tags[(self.frames - ago) % REMEMBERED] {
-            Tag::Measured(way) => self.costs[way.index()].add(ms),
+            Tag::Measured(path) => self.costs[path.index()].add(ms),
             Tag::Watched => self.watch.costs.add(ms),
             Tag::Nothing => {}
         }
@@ -370,7 +370,7 @@ impl Chooser {
     fn collect(&mut self, now_ns: i64) {
         let Phase::Collecting { left, begin_ns } = &mut self.phase else { return };
         let begin_ns = *begin_ns;
-        let is_missing = |way: StereoPath| self.costs[way.index()].len() < self.intervals[way.index()].len();
+        let is_missing = |path: StereoPath| self.costs[path.index()].len() < self.intervals[path.index()].len();
         if *left > 0 && StereoPath::BOTH.into_iter().any(is_missing) {
             *left -= 1;
             return;
@@ -387,23 +387,23 @@ impl Chooser {
             Some([two_views?, synthesis?])
         };
         let (costs, intervals) = (of_both(&self.costs), of_both(&self.intervals));
-        let stay = |reason, costs_ms| Choice { way: self.choice.way, reason, costs_ms };
+        let stay = |reason, costs_ms| Choice { path: self.choice.path, reason, costs_ms };
         let Some(intervals) = intervals else { return stay(Reason::Incomparable, None) };
         if self.refresh_hz > 0.0 {
             let in_time = intervals.map(|ms| ms * self.refresh_hz <= 1e3 * MAX_REFRESHES_PER_FRAME);
             if in_time[0] != in_time[1] {
-                let way = if in_time[0] { StereoPath::TwoViews } else { StereoPath::Synthesis };
-                return Choice { way, reason: Reason::HoldsRate, costs_ms: Some(intervals) };
+                let path = if in_time[0] { StereoPath::TwoViews } else { StereoPath::Synthesis };
+                return Choice { path, reason: Reason::HoldsRate, costs_ms: Some(intervals) };
             }
             if costs.is_none() && in_time[0] {
                 return stay(Reason::BothHoldRate, None);
             }
         }
         let costs = costs.unwrap_or(intervals);
-        let [now, other] = [self.choice.way, self.choice.way.other()].map(|way| costs[way.index()]);
+        let [now, other] = [self.choice.path, self.choice.path.other()].map(|path| costs[path.index()]);
         let share = if self.choice.reason == Reason::Unmeasured { 1.0 } else { SWITCH_BELOW };
         if other < now * share {
-            Choice { way: self.choice.way.other(), reason: Reason::Cheaper, costs_ms: Some(costs) }
+            Choice { path: self.choice.path.other(), reason: Reason::Cheaper, costs_ms: Some(costs) }
         } else if now <= other {
             stay(Reason::Cheaper, Some(costs))
         } else {

@@ -54,9 +54,9 @@ impl Device {
     }
 
     fn frame(&mut self) {
-        let way = self.chooser.way();
-        self.frames[way.index()] += 1;
-        let rendered = if self.is_near { StereoPath::TwoViews } else { way };
+        let path = self.chooser.path();
+        self.frames[path.index()] += 1;
+        let rendered = if self.is_near { StereoPath::TwoViews } else { path };
         let spike = if self.random.random::<f32>() < self.spikes { 10.0 } else { 1.0 };
         let factor = spike * (1.0 + self.noise * self.random.random_range(-1.0..=1.0));
         let gpu_ms = self.gpu_ms[rendered.index()] * factor;
@@ -69,15 +69,15 @@ impl Device {
             let is_there = self.late.len() > frames_ago as usize;
             is_there.then(|| Cost { frames_ago, ms: self.late.pop_front().unwrap_or_default() })
         });
-        let before = self.chooser.choice().way;
+        let before = self.chooser.choice().path;
         self.chooser.end_frame(&FrameEnd {
             now_ns: self.now_ns,
             refresh_hz: self.refresh_hz,
-            rendered: (!self.is_near).then_some(way),
+            rendered: (!self.is_near).then_some(path),
             cost,
             heat: self.heat,
         });
-        self.changes += u32::from(self.chooser.choice().way != before);
+        self.changes += u32::from(self.chooser.choice().path != before);
     }
 
     fn run(&mut self, seconds: f64) -> Choice {
@@ -104,12 +104,12 @@ impl Device {
 
 #[test]
 fn the_cheaper_way_is_chosen_by_late_times_of_a_timer() {
-    for (gpu_ms, way) in [(SIMPLE, StereoPath::Synthesis), ([6.1, 8.9], StereoPath::TwoViews)] {
+    for (gpu_ms, path) in [(SIMPLE, StereoPath::Synthesis), ([6.1, 8.9], StereoPath::TwoViews)] {
         for late in [0, 4, 12] {
             let mut device = Device::new(gpu_ms, Some(late));
             device.measured_after();
             let choice = device.chooser.choice();
-            assert_eq!((choice.way, choice.reason), (way, Reason::Cheaper), "{late} frames late");
+            assert_eq!((choice.path, choice.reason), (path, Reason::Cheaper), "{late} frames late");
             let costs = choice.costs_ms.unwrap();
             assert!(
                 costs.iter().zip(gpu_ms).all(|(a, b)| (a - b).abs() < 1e-3),
@@ -124,11 +124,11 @@ fn the_cheaper_way_is_chosen_by_late_times_of_a_timer() {
 #[test]
 fn noise_and_spikes_do_not_choose() {
     for seed in 0..50 {
-        for (gpu_ms, way) in [([9.0, 7.2], StereoPath::Synthesis), ([7.2, 9.0], StereoPath::TwoViews)] {
+        for (gpu_ms, path) in [([9.0, 7.2], StereoPath::Synthesis), ([7.2, 9.0], StereoPath::TwoViews)] {
             let mut device = Device::new(gpu_ms, Some(4)).noisy(0.2, 0.04, seed);
             device.refresh_hz = 72.0;
             device.measured_after();
-            assert_eq!(device.chooser.choice().way, way, "seed {seed}: {:?}", device.chooser.choice());
+            assert_eq!(device.chooser.choice().path, path, "seed {seed}: {:?}", device.chooser.choice());
         }
     }
 }
@@ -144,7 +144,7 @@ fn equal_costs_do_not_swing_and_measuring_costs_next_to_nothing() {
     let mut device = Device::new([16.0, 8.0], Some(4));
     device.run(3600.0);
     let [dear, cheap] = device.frames.map(|n| n as f32);
-    assert!(dear / cheap < 0.002, "{dear} frames in the dearer way, {cheap} in the cheaper one");
+    assert!(dear / cheap < 0.002, "{dear} frames in the dearer path, {cheap} in the cheaper one");
 }
 
 #[test]
@@ -156,10 +156,10 @@ fn heat_is_a_reason_to_measure_again_but_not_at_once() {
     // Memory slows down, which synthesis needs most; not by enough to be seen without heat.
     (device.gpu_ms, device.heat) = ([7.0, 7.9], Some(0.55));
     device.run(40.0);
-    assert_eq!(device.chooser.choice().way, StereoPath::Synthesis, "hardly warmer");
+    assert_eq!(device.chooser.choice().path, StereoPath::Synthesis, "hardly warmer");
     device.heat = Some(0.62);
     assert!(device.measured_after() < 1.0);
-    assert_eq!(device.chooser.choice().way, StereoPath::TwoViews);
+    assert_eq!(device.chooser.choice().path, StereoPath::TwoViews);
     device.heat = Some(0.9);
     let rest = device.measured_after();
     assert!((29.0..31.0).contains(&rest), "{rest} s after the last measurement");
@@ -177,7 +177,7 @@ fn another_cost_of_the_same_way_is_a_reason_to_measure_again() {
     device.gpu_ms = [5.0, 9.0];
     let seconds = device.measured_after();
     assert!(seconds < 4.5, "{seconds} s");
-    assert_eq!((device.chooser.choice().way, device.changes), (StereoPath::TwoViews, 1));
+    assert_eq!((device.chooser.choice().path, device.changes), (StereoPath::TwoViews, 1));
 }
 
 #[test]
@@ -190,18 +190,18 @@ fn another_scene_is_measured_at_once_and_without_prejudice() {
     assert_eq!(device.chooser.choice().reason, Reason::Similar);
     device.chooser.scene_changed();
     assert!(device.chooser.is_measuring());
-    let unmeasured = Choice { way: StereoPath::Synthesis, reason: Reason::Unmeasured, costs_ms: None };
+    let unmeasured = Choice { path: StereoPath::Synthesis, reason: Reason::Unmeasured, costs_ms: None };
     assert_eq!(device.chooser.choice(), unmeasured);
     device.now_ns += 20_000_000_000;
     device.measured_after();
     let choice = device.chooser.choice();
-    assert_eq!((choice.way, choice.reason), (StereoPath::TwoViews, Reason::Cheaper));
+    assert_eq!((choice.path, choice.reason), (StereoPath::TwoViews, Reason::Cheaper));
 }
 
 #[test]
 fn the_display_hides_what_fits_into_a_refresh() {
-    // (GPU's times, chosen way, reason, compared times), without a timer at 60 Hz.
-    for (gpu_ms, way, reason, costs_ms) in [
+    // (GPU's times, chosen path, reason, compared times), without a timer at 60 Hz.
+    for (gpu_ms, path, reason, costs_ms) in [
         ([12.0, 8.0], StereoPath::Synthesis, Reason::BothHoldRate, None),
         ([8.0, 12.0], StereoPath::Synthesis, Reason::BothHoldRate, None),
         ([20.0, 12.0], StereoPath::Synthesis, Reason::HoldsRate, Some([33.333, 16.667])),
@@ -212,7 +212,7 @@ fn the_display_hides_what_fits_into_a_refresh() {
         let mut device = Device::new(gpu_ms, None);
         device.measured_after();
         let choice = device.chooser.choice();
-        assert_eq!((choice.way, choice.reason), (way, reason), "{gpu_ms:?}");
+        assert_eq!((choice.path, choice.reason), (path, reason), "{gpu_ms:?}");
         let rounded = choice.costs_ms.map(|costs| costs.map(|ms| (ms * 1e3).round() / 1e3));
         assert_eq!(rounded, costs_ms, "{gpu_ms:?}");
     }
@@ -223,12 +223,12 @@ fn the_display_hides_what_fits_into_a_refresh() {
     assert_eq!(device.chooser.choice().reason, Reason::BothHoldRate);
     device.gpu_ms = [14.0, 20.0];
     assert!(device.measured_after() < 4.5);
-    assert_eq!(device.chooser.choice().way, StereoPath::TwoViews);
+    assert_eq!(device.chooser.choice().path, StereoPath::TwoViews);
     // A display of unknown rate sets no pace.
     let mut device = Device::new([8.0, 12.0], None);
     device.refresh_hz = 0.0;
     device.measured_after();
-    assert_eq!(device.chooser.choice().way, StereoPath::TwoViews);
+    assert_eq!(device.chooser.choice().path, StereoPath::TwoViews);
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn holding_the_rate_is_worth_more_than_the_gpus_time() {
     device.cpu_ms = [19.0, 10.0];
     device.measured_after();
     let choice = device.chooser.choice();
-    assert_eq!((choice.way, choice.reason), (StereoPath::Synthesis, Reason::HoldsRate));
+    assert_eq!((choice.path, choice.reason), (StereoPath::Synthesis, Reason::HoldsRate));
 }
 
 #[test]
@@ -247,11 +247,11 @@ fn frames_in_place_of_synthesis_do_not_count_for_it() {
     device.is_near = true;
     device.measured_after();
     let choice = device.chooser.choice();
-    assert_eq!((choice.way, choice.reason), (StereoPath::Synthesis, Reason::Incomparable));
+    assert_eq!((choice.path, choice.reason), (StereoPath::Synthesis, Reason::Incomparable));
     device.is_near = false;
     let rest = device.measured_after();
     assert!((59.0..61.0).contains(&rest), "{rest} s");
-    assert_eq!(device.chooser.choice().way, StereoPath::TwoViews);
+    assert_eq!(device.chooser.choice().path, StereoPath::TwoViews);
 }
 
 #[test]
@@ -279,12 +279,12 @@ fn nonsense_is_no_time() {
         chooser.end_frame(&FrameEnd {
             now_ns: frame * 11_000_000,
             refresh_hz: f32::NAN,
-            rendered: Some(chooser.way()),
+            rendered: Some(chooser.path()),
             cost: Some(Cost { frames_ago: [0, 63, 64, u32::MAX][frame as usize % 4], ms }),
             heat: Some(f32::NAN),
         });
     }
     let choice = chooser.choice();
     assert!(!chooser.is_measuring());
-    assert_eq!((choice.way, choice.costs_ms), (StereoPath::TwoViews, Some([11.0, 11.0])));
+    assert_eq!((choice.path, choice.costs_ms), (StereoPath::TwoViews, Some([11.0, 11.0])));
 }

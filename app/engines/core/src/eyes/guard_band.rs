@@ -15,13 +15,9 @@ pub enum GuardBand {
     Distance(f32),
     /// A number of pixels, up to [`GuardBand::MAX_PIXELS`].
     Pixels(u32),
-    /// [`GuardBand::Distance`], but the renderer may leave out columns that the other eye does not see at the moment.
-    Auto(f32),
 }
 
 impl GuardBand {
-    /// The text `auto`: a [`GuardBand::Auto`] that is complete from 1 m on.
-    pub const AUTO: GuardBand = GuardBand::Auto(1.0);
     /// The widest band.
     pub const MAX_PIXELS: u32 = 1024;
     /// The distances in metres that a text may have. In worlds of another scale other distances make sense.
@@ -31,7 +27,7 @@ impl GuardBand {
     pub fn is_valid(&self) -> bool {
         match self {
             GuardBand::None => true,
-            GuardBand::Distance(z) | GuardBand::Auto(z) => GuardBand::DISTANCES.contains(z),
+            GuardBand::Distance(z) => GuardBand::DISTANCES.contains(z),
             GuardBand::Pixels(n) => *n <= GuardBand::MAX_PIXELS,
         }
     }
@@ -40,7 +36,7 @@ impl GuardBand {
     pub(super) fn is_possible(&self) -> bool {
         match self {
             GuardBand::None => true,
-            GuardBand::Distance(z) | GuardBand::Auto(z) => *z > 0.0 && z.is_finite(),
+            GuardBand::Distance(z) => *z > 0.0 && z.is_finite(),
             GuardBand::Pixels(n) => *n <= GuardBand::MAX_PIXELS,
         }
     }
@@ -50,33 +46,25 @@ impl GuardBand {
         match self {
             GuardBand::None => 0,
             GuardBand::Pixels(n) => n,
-            GuardBand::Distance(z) | GuardBand::Auto(z) => {
-                (focal_length * ipd / z - 1e-3).ceil().max(0.0) as u32
-            }
+            GuardBand::Distance(z) => (focal_length * ipd / z - 1e-3).ceil().max(0.0) as u32,
         }
     }
 }
 
 /// The error for a text that is not a [`GuardBand`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "give none, pixels such as 40px, metres such as 1.0, or auto, which may have metres such as auto:0.5"
-)]
+#[error("give none, pixels such as 40px, or metres such as 1.0")]
 pub struct ParseGuardBandError;
 
-/// `none`, pixels (`40px`) up to [`GuardBand::MAX_PIXELS`], metres (`1.0`) within [`GuardBand::DISTANCES`], or `auto`,
-/// with metres `auto:0.5`.
+/// `none`, pixels (`40px`) up to [`GuardBand::MAX_PIXELS`], or metres (`1.0`) within [`GuardBand::DISTANCES`].
 impl FromStr for GuardBand {
     type Err = ParseGuardBandError;
 
     fn from_str(text: &str) -> Result<GuardBand, ParseGuardBandError> {
-        let metres = |text: &str| text.parse().ok();
-        match (text, text.strip_suffix("px"), text.strip_prefix("auto:")) {
-            ("none", ..) => Some(GuardBand::None),
-            ("auto", ..) => Some(GuardBand::AUTO),
-            (_, Some(pixels), _) => pixels.parse().ok().map(GuardBand::Pixels),
-            (_, _, Some(text)) => metres(text).map(GuardBand::Auto),
-            (text, None, None) => metres(text).map(GuardBand::Distance),
+        match (text, text.strip_suffix("px")) {
+            ("none", _) => Some(GuardBand::None),
+            (_, Some(pixels)) => pixels.parse().ok().map(GuardBand::Pixels),
+            (metres, None) => metres.parse().ok().map(GuardBand::Distance),
         }
         .filter(GuardBand::is_valid)
         .ok_or(ParseGuardBandError)
@@ -90,7 +78,6 @@ impl Display for GuardBand {
             GuardBand::None => f.write_str("none"),
             GuardBand::Pixels(n) => write!(f, "{n}px"),
             GuardBand::Distance(z) => write!(f, "{z}"),
-            GuardBand::Auto(z) => write!(f, "auto:{z}"),
         }
     }
 }
@@ -105,13 +92,10 @@ mod tests {
             ("none", GuardBand::None),
             ("40px", GuardBand::Pixels(40)),
             ("0.5", GuardBand::Distance(0.5)),
-            ("auto:1", GuardBand::AUTO),
-            ("auto:0.5", GuardBand::Auto(0.5)),
         ] {
             assert_eq!((text.parse(), band.to_string().as_str()), (Ok(band), text));
         }
-        assert_eq!("auto".parse(), Ok(GuardBand::AUTO));
-        for text in ["", "auto:", "auto:0", "auto:40px", "2000px", "-1", "Auto", "1 m"] {
+        for text in ["", "auto", "0", "0px1", "2000px", "-1", "Auto", "1 m"] {
             assert_eq!(text.parse::<GuardBand>(), Err(ParseGuardBandError), "{text}");
         }
     }

@@ -5,7 +5,6 @@
 
 mod depth;
 mod error;
-mod extrapolation;
 mod foveation;
 mod guard_band;
 mod motion;
@@ -16,7 +15,6 @@ mod warp;
 
 pub use depth::{DepthConvention, DepthRange};
 pub use error::EyesError;
-pub use extrapolation::Extrapolation;
 pub use foveation::{
     Composition, Foveation, FoveationLevel, Gaze, InsetPlace, LevelPlace, StereoViews, ViewLayer,
 };

@@ -114,6 +114,17 @@ impl EyePair {
         EyePair { frusta: self.frusta.map(grown), ..*self }
     }
 
+    /// True if these eyes have the frusta of others, to a hundredth of a pixel.
+    pub fn has_same_frusta(&self, other: &EyePair) -> bool {
+        Eye::BOTH.iter().all(|eye| {
+            let [own, other] = [self, other].map(|pair| pair.frusta[eye.index()]);
+            let pixel = (own.width() / self.size[0] as f32).min(own.height() / self.size[1] as f32);
+            let sides =
+                [own.left - other.left, own.right - other.right, own.bottom - other.bottom, own.top - other.top];
+            sides.iter().all(|side| side.abs() < 0.01 * pixel)
+        })
+    }
+
     /// Returns the rectified eyes: at the same positions, parallel, perpendicular to the line between them, with frusta
     /// that contain the original ones. Use them for canted eyes: since both have the same centre, a view of a parallel
     /// eye can be turned exactly into that of the canted eye. `None` if an eye sees further than 80 degrees from the

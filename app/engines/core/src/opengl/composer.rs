@@ -15,7 +15,7 @@ pub struct LevelImage {
     /// Colour, in any filterable format and any encoding.
     pub color: glow::Texture,
     /// The rectangle of the level in its texture. For the dominant eye, the crop of the rendered image
-    /// ([`ViewLayer::origin`](crate::eyes::ViewLayer::origin)). `None` if it fills the texture.
+    /// ([`SynthesisViews::dominant_crop`](crate::eyes::SynthesisViews::dominant_crop)). `None` if it fills the texture.
     pub part: Option<Part>,
 }
 

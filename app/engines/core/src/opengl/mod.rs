@@ -4,7 +4,7 @@
 //! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. [`Motion`] makes the other eye's motion
 //! vectors. All are a [`Pipeline`], and need OpenGL
 //! ES 3.0, desktop OpenGL 4.5 (4.3 with GL_ARB_ES3_1_compatibility) or WebGL 2. `examples/engine.rs` uses one in a
-//! separate engine. [`Extrapolator`] moves a source on to a later time. [`GuessedDepth`] comes before [`Gather`] where only one sample's depth of an anti-aliased image can
+//! separate engine. [`GuessedDepth`] comes before [`Gather`] where only one sample's depth of an anti-aliased image can
 //! be had.
 //!
 //! A [`Composer`] makes an eye from the levels of a foveated view.
@@ -14,7 +14,6 @@
 //! waiting; [`Context::take_pass_times`] waits.
 
 mod composer;
-mod extrapolator;
 mod guessed_depth;
 mod pipeline;
 
@@ -23,7 +22,6 @@ use crate::synthesis::backend::{Places, WarpKind, map_sizes};
 use yoro_gl::Program;
 
 pub use composer::{Composer, InsetImage, LevelImage, LevelImages};
-pub use extrapolator::Extrapolator;
 pub use glow;
 pub use guessed_depth::GuessedDepth;
 pub use pipeline::{AnyView, Gather, Motion, Pipeline};

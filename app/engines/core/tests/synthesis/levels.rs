@@ -136,22 +136,23 @@ fn the_fovea_loses_nothing() {
             let eyes = eyes([300, 200], dominant, DepthConvention::Reversed);
             let foveation = Foveation { radius: 0.35, ..Foveation::MEDIUM };
             let gaze = Gaze::Direction(Quat::from_rotation_y(0.15) * Vec3::NEG_Z);
-            let levels = eyes.levels(Some(&foveation), gaze, GuardBand::None).unwrap();
-            let inset = levels.inset.unwrap();
+            let views = eyes.stereo_views(Some(&foveation), gaze).unwrap();
+            let inset = views.inset.unwrap();
+            let own = inset.synthesis_views(GuardBand::None).unwrap();
             let whole = eyes.synthesis_views(GuardBand::Distance(foveation.nearest)).unwrap();
             let (rgba, depth) = scene(whole.source.size, eyes.depth, seed as u64);
             let place = corner(&inset, &eyes.view(dominant), dominant.index());
             let in_source = [0, 1]
-                .map(|i| whole.dominant_crop[i] as i32 + place[i] - inset.views.dominant_crop[i] as i32);
-            let [width, size] = [whole.source.size[0], inset.views.source.size[0]];
+                .map(|i| whole.dominant_crop[i] as i32 + place[i] - own.dominant_crop[i] as i32);
+            let [width, size] = [whole.source.size[0], own.source.size[0]];
             assert!(in_source[0] >= 0 && in_source[0] as u32 + size <= width);
             let part =
-                |channels: usize, all: &[u8]| cut(all, width, in_source, inset.views.source.size, channels);
-            let depths = cut(&depth, width, in_source, inset.views.source.size, 1);
+                |channels: usize, all: &[u8]| cut(all, width, in_source, own.source.size, channels);
+            let depths = cut(&depth, width, in_source, own.source.size, 1);
             let run =
                 |rgba: &[u8], depth: &[f32], warp| super::subject().in_memory(gl).run(rgba, depth, warp);
             let all = run(&rgba, &depth, &whole.warp).rgba;
-            let got = run(&part(4, &rgba), &depths, &inset.views.warp).rgba;
+            let got = run(&part(4, &rgba), &depths, &own.warp).rgba;
             let other = dominant.other();
             let place = corner(&inset, &eyes.view(other), other.index());
             let want = cut(&all, 300, place, inset.eyes.size, 4);
@@ -173,11 +174,11 @@ fn a_gaze_that_moves_allocates_and_compiles_nothing() {
             let gaze = Gaze::Direction(
                 Quat::from_rotation_y(turn) * Quat::from_rotation_x(turn / 2.0) * Vec3::NEG_Z,
             );
-            eyes.levels(Some(&Foveation::MEDIUM), gaze, GuardBand::Distance(1.0)).unwrap()
+            eyes.stereo_views(Some(&Foveation::MEDIUM), gaze).unwrap()
         };
         let first = levels(0.0);
         let make = |level: &ViewLayer| {
-            let size = level.views.source.size;
+            let size = level.synthesis_views(GuardBand::Distance(1.0)).unwrap().source.size;
             let (rgba, depth) = scene(size, eyes.depth, 5);
             let images =
                 [texture(gl, size, Format::Rgba8, &rgba), texture(gl, size, Format::R32F, &bytes(&depth))];
@@ -196,7 +197,8 @@ fn a_gaze_that_moves_allocates_and_compiles_nothing() {
             let synthesize =
                 |level: &ViewLayer, (images, target, gather): &mut ([Texture; 2], RenderTarget, Gather)| {
                     let source = Source::new(images[0].raw(), images[1].raw());
-                    gather.synthesize(source, &level.views.warp, &Destination::whole(target)).unwrap();
+                    let warp = level.synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
+                    gather.synthesize(source, &warp, &Destination::whole(target)).unwrap();
                 };
             synthesize(&levels.wide, &mut wide);
             synthesize(&levels.inset.unwrap(), &mut inset);

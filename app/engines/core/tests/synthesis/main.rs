@@ -1,7 +1,6 @@
 //! The gather pipeline against its f64 reference, and the laws that it must keep, on every available GL backend.
 
 mod any_view;
-mod extrapolation;
 mod guessed_depth;
 mod host;
 mod levels;

@@ -24,8 +24,6 @@ pub enum Measure {
     },
     /// Flicker along a part of the camera path.
     Flicker,
-    /// Use of the guard band along a part of the camera path.
-    GuardBand,
     /// Every level of foveation, by two renders and by synthesis.
     Foveation,
     /// Patchers on reprojected images.

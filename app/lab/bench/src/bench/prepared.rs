@@ -4,10 +4,10 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use super::process;
-use yoro::eyes::{EyePair, GuardBand};
+use yoro::eyes::EyePair;
 use yoro_gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
-    self, GuardBandUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
+    self, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
 };
 use yoro_render::{PreparedScene, RenderSettings};
 
@@ -36,9 +36,8 @@ impl PreparedContender {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<PreparedContender, GlError> {
-        // The third frame is the first to use the results of the first: the guard band's width, or that all is near.
-        let looks = matches!(options.guard_band, GuardBand::Auto(_)) || options.policy.is_some();
-        let unsettled = if method == Method::Synthesized && looks { 2 } else { 0 };
+        // The third frame is the first to use the result of the first: that all is near.
+        let unsettled = if method == Method::Synthesized && options.policy.is_some() { 2 } else { 0 };
         Ok(PreparedContender {
             gl: gl.clone(),
             method: stereo::create(gl, method, settings, options)?,
@@ -80,11 +79,6 @@ impl PreparedContender {
         self.method.render(&mut prepared.renderer, &prepared.scene, pair, frame)?;
         self.gl.finish();
         Ok(FrameTime { wall: start.elapsed(), cpu: process::cpu_time().saturating_sub(cpu) })
-    }
-
-    /// Returns the use of the guard band, as [`StereoMethod::report`] says it.
-    pub fn guard_band(&self) -> Option<GuardBandUse> {
-        self.method.report().guard_band
     }
 
     /// Renders a frame after settling, with a timer around each pass. Returns the passes' names in the order of their

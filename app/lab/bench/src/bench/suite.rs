@@ -64,9 +64,8 @@ suites! {
     Resolution "resolution" "Frame time and quality of every method from 512 to 2048 pixels per eye",
     AntiAliasing "anti-aliasing" "Quality and frame time with one, two and four samples per pixel",
     Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
-    GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
-    HalfRate "half-rate" "Quality and time of the frame between two renders: by a runtime from both eyes' motion or from one eye's, by depth alone, and by yoro",
+    HalfRate "half-rate" "Quality and time of the frame that a runtime makes between two renders, from both eyes' motion or from one eye's",
     Foveation "foveation" "Frame time, shaded pixels and quality of eyes with all pixels only where they look, by two renders and by synthesis, at 60 and 90 degrees",
     Stream "stream" "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs, and with --frame whole frames on six, none of which need be here",
@@ -120,7 +119,6 @@ const STREAM_DELAYS: [usize; 3] = [0, 2, 5];
 /// The number of frames of the suite `stream`, and in the short form.
 const STREAM_FRAMES: [usize; 2] = [8, 3];
 /// The number of frames of the suite `guard-band`, and in the short form.
-const GUARD_BAND_FRAMES: [usize; 2] = [36, 6];
 
 impl Choices {
     /// Returns the settings of a suite in the order of measurement: those that share a scene follow each other.
@@ -177,12 +175,6 @@ impl Choices {
             Suite::Flicker => sweep(Measure::Flicker, synthesis()).over(self.varied(), [()], |job, ()| {
                 job.frames = FLICKER_FRAMES[usize::from(self.quick)];
             }),
-            Suite::GuardBand => {
-                let contenders = [vec![Contender::MONO], Contender::bands()].concat();
-                sweep(Measure::GuardBand, contenders).over(self.scenes(&every), [()], |job, ()| {
-                    job.frames = GUARD_BAND_FRAMES[usize::from(self.quick)];
-                })
-            }
             Suite::Reprojection => {
                 self.reprojection(sweep(Measure::Reprojection(TargetPose::Canted), Vec::new()))
             }

@@ -50,7 +50,7 @@ fn a_good_log_has_no_faults() {
     assert_eq!(reading.line(&logged(1e9, 6, &other), None), LineContent::Other);
     assert_eq!(reading.line("--------- beginning of main", None), LineContent::Other);
     assert_eq!(reading.line(&logged(1e9, 7, &"yoro 0.1.0 starts"), None), LineContent::Other);
-    assert_eq!(reading.line(&logged(1e9, 7, &"v=1,summary=1,t=60.0s"), None), LineContent::Summary);
+    assert_eq!(reading.line(&logged(1e9, 7, &"v=2,summary=1,t=60.0s"), None), LineContent::Summary);
 }
 
 #[test]
@@ -195,9 +195,9 @@ fn raw_logs_may_contain_other_words() {
         (reading.samples(), reading.damaged())
     };
     // In a log of bare messages, other words are messages as well.
-    assert_eq!(of(&["yoro 0.1.0 starts", &text, "rating,v=1", &text[..50]]), (1, 1));
+    assert_eq!(of(&["yoro 0.1.0 starts", &text, "rating,v=2", &text[..50]]), (1, 1));
     let full = logged(1e9, 7, &text);
-    assert_eq!(of(&["00I YORO    : v=1", &full, "10000000"]), (1, 2));
+    assert_eq!(of(&["00I YORO    : v=2", &full, "10000000"]), (1, 2));
     assert_eq!(of(&["nothing", "of ours"]), (0, 0));
 }
 

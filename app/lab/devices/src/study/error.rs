@@ -40,7 +40,7 @@ pub enum StudyError {
     },
     /// The logs contain no rating.
     #[error(
-        "there is no rating in {0}: ratings are lines of the viewer's log that begin with rating,v=1, and name a participant"
+        "there is no rating in {0}: ratings are lines of the viewer's log that begin with rating,v=2, and name a participant"
     )]
     NoRating(String),
     /// The user has interrupted the program.

@@ -226,12 +226,12 @@ mod tests {
     fn logs_give_ratings_and_name_damage() {
         let line = |trial: u32, pipeline: &str, value: &str| {
             format!(
-                "11-21 10:00:01.000  4242  4260 I YORO    : rating,v=1,participant=P01,trial={trial},method=yoro,\
+                "11-21 10:00:01.000  4242  4260 I YORO    : rating,v=2,participant=P01,trial={trial},method=yoro,\
                  pipeline={pipeline},scene=street,question=q,value={value}\n"
             )
         };
         let log = [
-            "11-21 10:00:01.000  4242  4260 I YORO    : v=1,t=1.0s\n".to_owned(),
+            "11-21 10:00:01.000  4242  4260 I YORO    : v=2,t=1.0s\n".to_owned(),
             line(1, "gather", "3.0"),
             line(2, "paper", "4.0"),
             line(1, "gather", "3.5"),

@@ -54,7 +54,7 @@ fn minute(script: &str) -> Capture {
     assert!(capture.samples.is_sorted_by(|a, b| a.time_s < b.time_s), "no second comes twice");
     // The samples match the log beside them.
     let log = fs::read_to_string(dir.path().join("run/log.txt")).unwrap();
-    let lines = log.lines().filter(|line| line.contains(": v=1,t=")).count();
+    let lines = log.lines().filter(|line| line.contains(": v=2,t=")).count();
     assert!(lines >= capture.samples.len(), "{lines}");
     capture
 }

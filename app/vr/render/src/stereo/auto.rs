@@ -8,226 +8,21 @@ use std::time::Instant;
 #[cfg(target_arch = "wasm32")]
 use web_time::Instant;
 
-use super::levels::{EyeLevels, LevelMethods, LevelTargets};
-use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod, Substituted};
-use super::options::{FramesBetween, Method, MethodChoice, StereoOptions};
-use crate::view::{GpuScene, RenderSettings, Renderer};
+use super::images::LayerTargets;
+use super::session::FrameLoad;
 use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, StereoPath};
-use yoro::eyes::{EyePair, EyesError, GuardBand};
-use yoro_gl::{Context, GlError};
+use yoro_gl::Context;
 
-/// The methods by [`StereoPath::index`].
-const METHODS: [Method; 2] = [Method::Conventional, Method::Synthesized];
-
-/// Returns the reason why a method cannot use a pair of eyes, or `None` if it can.
-pub fn unfit(method: Method, pair: &EyePair) -> Option<EyesError> {
-    if method.needs_aligned_eyes() { pair.synthesis_views(GuardBand::None).err() } else { None }
-}
-
-/// A named method or the cheaper of two, and two renders in its place for eyes that it cannot use.
-pub struct SelectedMethod {
-    gl: Rc<Context>,
-    settings: RenderSettings,
-    options: StereoOptions,
-    method: Method,
-    kind: Kind,
-    /// Two renders, made when first needed.
-    both: Option<LevelMethods>,
-    /// True while both eyes are rendered for a comparison with the method.
-    is_comparing: bool,
-    /// The reason why the method could not use the last frame's eyes, if so.
-    unfit: Option<EyesError>,
-}
-
-enum Kind {
-    /// Always this method.
-    Named(LevelMethods),
-    /// The cheaper one.
-    Auto(Box<Auto>),
-}
-
-impl SelectedMethod {
-    /// Makes the method, or both methods.
-    ///
-    /// # Errors
-    /// As [`super::create`].
-    pub fn new(
-        gl: &Rc<Context>,
-        choice: MethodChoice,
-        settings: &RenderSettings,
-        options: &StereoOptions,
-    ) -> Result<SelectedMethod, GlError> {
-        let named = |method| LevelMethods::new(gl, method, settings, options).map(Kind::Named);
-        let kind = match choice {
-            MethodChoice::Named(method) => named(method)?,
-            // Turns of two methods would need renders of both.
-            MethodChoice::Auto if options.frames_between == FramesBetween::Method => {
-                named(Method::Synthesized)?
-            }
-            MethodChoice::Auto => Kind::Auto(Box::new(Auto::new(gl, settings, options)?)),
-        };
-        Ok(SelectedMethod {
-            gl: gl.clone(),
-            settings: settings.clone(),
-            options: *options,
-            method: choice.first(),
-            kind,
-            both: None,
-            is_comparing: false,
-            unfit: None,
-        })
-    }
-
-    /// Returns the choice between two methods, if there is one.
-    pub fn auto(&self) -> Option<&Auto> {
-        match &self.kind {
-            Kind::Named(_) => None,
-            Kind::Auto(auto) => Some(auto),
-        }
-    }
-
-    /// Returns the choice between two methods, if there is one.
-    pub fn auto_mut(&mut self) -> Option<&mut Auto> {
-        match &mut self.kind {
-            Kind::Named(_) => None,
-            Kind::Auto(auto) => Some(auto),
-        }
-    }
-
-    /// Starts or ends a comparison, during which both eyes are rendered.
-    ///
-    /// # Errors
-    /// As [`super::create`].
-    pub fn compare(&mut self, is_comparing: bool) -> Result<(), GlError> {
-        self.is_comparing = is_comparing;
-        if is_comparing {
-            self.both()?;
-        }
-        Ok(())
-    }
-
-    /// Makes two renders ready, so that the first frame of a comparison need not.
-    ///
-    /// # Errors
-    /// As [`super::create`].
-    pub fn prepare_comparison(&mut self) -> Result<(), GlError> {
-        self.both().map(drop)
-    }
-
-    fn both(&mut self) -> Result<&mut LevelMethods, GlError> {
-        let made = match self.both.take() {
-            Some(made) => made,
-            None => {
-                let mut options = self.options;
-                if options.frames_between == FramesBetween::Method {
-                    options.frames_between = FramesBetween::Nobody;
-                }
-                LevelMethods::new(&self.gl, Method::Conventional, &self.settings, &options)?
-            }
-        };
-        Ok(self.both.insert(made))
-    }
-
-    /// Renders both eyes of all levels of a frame into their targets; both of each level if neither eye can be synthesized
-    /// from the other. Levels need [`StereoOptions::inset`].
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render_level`].
-    pub fn render_levels(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        levels: &EyeLevels,
-        to: &LevelTargets,
-    ) -> Result<(), StereoError> {
-        self.unfit = levels.pairs().find_map(|pair| unfit(self.method, pair));
-        if self.unfit.is_none() && !self.is_comparing {
-            return match &mut self.kind {
-                Kind::Named(methods) => methods.render(renderer, scene, levels, to),
-                Kind::Auto(auto) => auto.render(renderer, scene, levels, to),
-            };
-        }
-        if let Kind::Auto(auto) = &mut self.kind {
-            auto.skip_frame();
-        }
-        self.both()?.render(renderer, scene, levels, to)
-    }
-
-    /// Shows the last render of all levels again; see [`StereoMethod::show_again`].
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render_level`].
-    pub fn show_levels_again(
-        &mut self,
-        levels: &EyeLevels,
-        to: &LevelTargets,
-        ahead: f32,
-    ) -> Result<bool, StereoError> {
-        let is_unfit = |pair: &EyePair| unfit(self.method, pair).is_some();
-        if self.is_comparing || self.unfit.is_some() || levels.pairs().any(is_unfit) {
-            return Ok(false);
-        }
-        match &mut self.kind {
-            Kind::Named(methods) => methods.show_again(levels, to, ahead),
-            // It is not made for half the rate.
-            Kind::Auto(_) => Ok(false),
-        }
-    }
-}
-
-/// A pair of eyes is one level.
-impl StereoMethod for SelectedMethod {
-    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
-        match &mut self.kind {
-            Kind::Named(methods) => methods.prepare(renderer, scene),
-            Kind::Auto(auto) => {
-                auto.methods.iter_mut().try_for_each(|methods| methods.prepare(renderer, scene))
-            }
-        }
-    }
-
-    fn render_level(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        level: &LevelEyes,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.render_levels(renderer, scene, &(&level.eyes).into(), &to.into())
-    }
-
-    fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2], ahead: f32) -> Result<bool, StereoError> {
-        self.show_levels_again(&pair.into(), &to.into(), ahead)
-    }
-
-    fn report(&self) -> MethodReport {
-        let both = || self.both.as_ref().map(LevelMethods::report).unwrap_or_default();
-        if let Some(reason) = &self.unfit {
-            return MethodReport { substituted: Some(Substituted::Eyes(*reason)), ..both() };
-        }
-        if self.is_comparing {
-            return both();
-        }
-        match &self.kind {
-            Kind::Named(methods) => methods.report(),
-            Kind::Auto(auto) => auto.report(),
-        }
-    }
-}
-
-/// Conventional and yoro, of which a [`Chooser`] picks the cheaper one. Both stay ready, so that switching costs
-/// nothing.
+/// The measurements of two renders and of one with synthesis, of which a [`Chooser`] picks the cheaper one. Both stay
+/// ready, so that switching costs nothing.
 ///
 /// The cost of a frame is its GPU time if passes are timed ([`Context::times_passes`]). Otherwise, while a choice is
 /// being made, each frame waits for the GPU before and after its eyes, and the cost is the CPU and GPU time together,
 /// by the clock.
 pub struct Auto {
     gl: Rc<Context>,
-    methods: [LevelMethods; 2],
     chooser: Chooser,
-    /// How the last frame was rendered.
-    shown: Option<StereoPath>,
-    /// The same if it counts as that method's, and its time by the clock.
+    /// How the last frame was rendered, if it counts as that path's, and its time by the clock.
     rendered: Option<StereoPath>,
     clock_ms: Option<f32>,
     /// True until the first frame is rendered.
@@ -235,22 +30,9 @@ pub struct Auto {
 }
 
 impl Auto {
-    fn new(gl: &Rc<Context>, settings: &RenderSettings, options: &StereoOptions) -> Result<Auto, GlError> {
-        let [two_views, synthesis] = METHODS.map(|method| LevelMethods::new(gl, method, settings, options));
-        Ok(Auto {
-            gl: gl.clone(),
-            methods: [two_views?, synthesis?],
-            chooser: Chooser::new(StereoPath::Synthesis),
-            shown: None,
-            rendered: None,
-            clock_ms: None,
-            is_new: true,
-        })
-    }
-
-    /// Returns the chosen method. While a choice is being made, the two methods take turns.
-    pub fn method(&self) -> Method {
-        METHODS[self.chooser.choice().way.index()]
+    pub(super) fn new(gl: &Rc<Context>) -> Auto {
+        let chooser = Chooser::new(StereoPath::Synthesis);
+        Auto { gl: gl.clone(), chooser, rendered: None, clock_ms: None, is_new: true }
     }
 
     /// Returns the last choice.
@@ -263,71 +45,66 @@ impl Auto {
         self.chooser.is_measuring()
     }
 
-    /// Notes that a frame was rendered by neither method, for its eyes or for a comparison.
-    fn skip_frame(&mut self) {
-        (self.shown, self.rendered, self.clock_ms) = (None, None, None);
+    /// Returns how the next frame is to be rendered.
+    pub(super) fn path(&self) -> StereoPath {
+        self.chooser.path()
+    }
+
+    /// True on the first call.
+    pub(super) fn take_new(&mut self) -> bool {
+        std::mem::take(&mut self.is_new)
+    }
+
+    /// Notes that a frame was rendered by neither path, for its eyes or for a comparison.
+    pub(super) fn skip_frame(&mut self) {
+        (self.rendered, self.clock_ms) = (None, None);
     }
 
     /// Starts a new choice, for another place in the scene.
-    pub fn scene_changed(&mut self) {
+    pub(super) fn scene_changed(&mut self) {
         self.chooser.scene_changed();
     }
 
-    /// Ends a frame that was handed to the display at `now_ns`. `gpu` is the GPU time of a recent frame, if known. See
-    /// [`FrameEnd`] for all parameters.
-    pub fn end_frame(&mut self, now_ns: i64, refresh_hz: f32, gpu: Option<Cost>, heat: Option<f32>) {
-        let (refresh_hz, cost) = match self.clock_ms.take() {
-            Some(ms) => (0.0, Some(Cost { frames_ago: 0, ms })),
-            None => (refresh_hz, gpu),
-        };
-        let rendered = self.rendered.take();
-        self.chooser.end_frame(&FrameEnd { now_ns, refresh_hz, rendered, cost, heat });
-    }
-}
-
-impl Auto {
-    fn report(&self) -> MethodReport {
-        self.shown.map_or(MethodReport::default(), |way| self.methods[way.index()].report())
-    }
-
-    fn render(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        levels: &EyeLevels,
-        to: &LevelTargets,
-    ) -> Result<(), StereoError> {
-        let way = self.chooser.way();
-        if std::mem::take(&mut self.is_new) {
-            // Makes everything that the other method needs now, while the scene comes into view, rather than in its
-            // first turn.
-            self.methods[way.other().index()].render(renderer, scene, levels, to)?;
-        }
+    /// Begins the eyes of a frame, and returns the time if the clock measures it.
+    pub(super) fn begin(&self, to: &LayerTargets) -> Option<Instant> {
         let is_clocked = self.chooser.is_measuring() && !self.gl.times_passes();
-        let finish = || to.pairs().for_each(|to| self.gl.finish_drawing(&to.map(|eye| eye.color)));
-        let begin = is_clocked.then(|| {
-            finish();
+        is_clocked.then(|| {
+            self.finish(to);
             Instant::now()
-        });
-        let methods = &mut self.methods[way.index()];
-        methods.render(renderer, scene, levels, to)?;
-        self.shown = Some(way);
-        self.rendered = methods.report().substituted.is_none().then_some(way);
+        })
+    }
+
+    /// Ends the eyes of a frame that counts as that of a path, if any.
+    pub(super) fn end(&mut self, path: Option<StereoPath>, begin: Option<Instant>, to: &LayerTargets) {
+        self.rendered = path;
         self.clock_ms = begin.map(|begin| {
-            finish();
+            self.finish(to);
             begin.elapsed().as_secs_f32() * 1e3
         });
-        Ok(())
+    }
+
+    fn finish(&self, to: &LayerTargets) {
+        to.layers().for_each(|to| self.gl.finish_drawing(&to.each_ref().map(|eye| eye.color)));
+    }
+
+    /// Takes the end of the last frame into account.
+    pub(super) fn end_frame(&mut self, load: &FrameLoad) {
+        let (refresh_hz, cost) = match self.clock_ms.take() {
+            Some(ms) => (0.0, Some(Cost { frames_ago: 0, ms })),
+            None => (load.refresh_hz, load.gpu),
+        };
+        let (rendered, heat) = (self.rendered.take(), load.thermal_headroom);
+        self.chooser.end_frame(&FrameEnd { now_ns: load.ended_ns, refresh_hz, rendered, cost, heat });
     }
 }
 
 /// Writes the reason for the choice in a word. In `6.1/8.9ms` the times are those of the chosen and the other method.
 impl Display for Auto {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Choice { way, reason, costs_ms } = self.choice();
+        let Choice { path, reason, costs_ms } = self.choice();
         match (costs_ms, reason) {
             _ if self.is_measuring() => f.write_str("measuring"),
-            (Some(costs), _) => write!(f, "{:.1}/{:.1}ms", costs[way.index()], costs[way.other().index()]),
+            (Some(costs), _) => write!(f, "{:.1}/{:.1}ms", costs[path.index()], costs[path.other().index()]),
             (None, Reason::BothHoldRate) => f.write_str("both-in-time"),
             (None, _) => f.write_str("not-comparable"),
         }
@@ -337,31 +114,46 @@ impl Display for Auto {
 #[cfg(test)]
 mod tests {
     use glam::Quat;
-    use yoro::eyes::{DepthConvention, Eye};
+    use yoro::eyes::{DepthConvention, Eye, EyePair};
     use yoro_context::{Backend, Headless};
 
-    use super::super::NearFieldPolicy;
+    use super::super::{Method, MethodChoice, NearFieldPolicy, StereoOptions, StereoSession};
     use super::super::tests::{Rig, local, pair};
     use super::*;
 
     const FRAME_NS: i64 = 200_000_000;
+    /// By [`StereoPath::index`].
+    const METHODS: [Method; 2] = [Method::Conventional, Method::Synthesized];
 
     /// Renders a measurement; `shows` checks each frame. Returns the choice, and the number of frames in each way.
     fn measure(
         rig: &mut Rig,
-        method: &mut SelectedMethod,
+        session: &mut StereoSession,
         pair: &EyePair,
         shows: impl Fn(StereoPath, [Vec<u8>; 2]) -> bool,
     ) -> (Choice, [u32; 2]) {
-        let (mut now_ns, mut frames) = (0, [0; 2]);
-        while method.auto().unwrap().is_measuring() {
-            let way = method.auto().unwrap().chooser.way();
-            assert!(shows(way, rig.render(method, pair)), "frame {frames:?}");
-            frames[way.index()] += 1;
-            now_ns += FRAME_NS;
-            method.auto_mut().unwrap().end_frame(now_ns, 60.0, None, None);
+        let mut frames = [0; 2];
+        let mut load = FrameLoad {
+            ended_ns: 0,
+            refresh_hz: 60.0,
+            display_hz: 60.0,
+            late_refreshes: 0,
+            gpu: None,
+            thermal_headroom: None,
+        };
+        let mut previous = None;
+        loop {
+            let shown = rig.render_after(session, pair, previous.as_ref());
+            let auto = session.auto().unwrap();
+            if !auto.is_measuring() {
+                return (auto.choice(), frames);
+            }
+            let path = auto.path();
+            assert!(shows(path, shown), "frame {frames:?}");
+            frames[path.index()] += 1;
+            load.ended_ns += FRAME_NS;
+            previous = Some(load);
         }
-        (method.auto().unwrap().choice(), frames)
     }
 
     #[test]
@@ -370,18 +162,18 @@ mod tests {
         let (gl, settings, options) = (head.gl(), local(), StereoOptions::default());
         let mut rig = Rig::new(gl, &settings);
         let pair = EyePair { size: [64, 48], ..pair(Eye::Right, DepthConvention::Standard) };
-        let named = METHODS.map(|method| {
-            rig.render(super::super::create(gl, method, &settings, &options).unwrap().as_mut(), &pair)
-        });
-        let mut auto = SelectedMethod::new(gl, MethodChoice::Auto, &settings, &options).unwrap();
-        let (choice, frames) = measure(&mut rig, &mut auto, &pair, |way, shown| shown == named[way.index()]);
+        let session = |choice| StereoSession::new(gl, choice, &settings, &options).unwrap();
+        let named = METHODS.map(|method| rig.render(&mut session(method.into()), &pair));
+        let mut auto = session(MethodChoice::Auto);
+        let (choice, frames) =
+            measure(&mut rig, &mut auto, &pair, |path, shown| shown == named[path.index()]);
         assert!(frames.iter().all(|n| *n >= 21), "{frames:?}");
         let costs = choice.costs_ms.unwrap();
         assert!(
             costs.iter().all(|ms| *ms < FRAME_NS as f32 * 1e-6),
             "the clock's times, not the display's: {costs:?}"
         );
-        assert_eq!(auto.auto().unwrap().method(), METHODS[usize::from(costs[1] <= costs[0])]);
+        assert_eq!(auto.method(), METHODS[usize::from(costs[1] <= costs[0])]);
     }
 
     #[test]
@@ -396,7 +188,7 @@ mod tests {
         let policy = Some(NearFieldPolicy { distance: 400.0, ..NearFieldPolicy::default() });
         for (pair, policy) in [(straight, policy), (canted, None)] {
             let options = StereoOptions { policy, ..StereoOptions::default() };
-            let mut auto = SelectedMethod::new(gl, MethodChoice::Auto, &settings, &options).unwrap();
+            let mut auto = StereoSession::new(gl, MethodChoice::Auto, &settings, &options).unwrap();
             let (choice, _) = measure(&mut rig, &mut auto, &pair, |_, _| true);
             assert_eq!((choice.reason, choice.costs_ms), (Reason::Incomparable, None));
         }

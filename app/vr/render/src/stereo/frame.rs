@@ -1,8 +1,12 @@
 //! A frame as stereo methods see it.
 
-use super::method::{EyeTarget, LevelEyes, StereoError};
+use std::cell::RefCell;
+
+use super::fallback::NearSwitch;
+use super::method::{EyeTarget, StereoError};
 use crate::view::{DepthImage, GpuScene, LitScene, Renderer};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, EyesError, GuardBand, SynthesisViews};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, EyesError, GuardBand, SynthesisViews, ViewLayer};
+use yoro_gl::GlError;
 
 /// A frame to render: its scene, its eyes and their targets.
 pub(super) struct Frame<'a> {
@@ -10,35 +14,55 @@ pub(super) struct Frame<'a> {
     pub(super) scene: LitScene<'a>,
     /// The eyes. Their depth is reversed, as everywhere in the renderer.
     pub(super) pair: EyePair,
-    level: LevelEyes,
+    layer: ViewLayer,
     /// The convention of the depth that targets receive.
     convention: DepthConvention,
     to: &'a [EyeTarget<'a>; 2],
+    /// Measures the dominant eye's depth for later frames.
+    near: RefCell<Option<&'a mut NearSwitch>>,
 }
 
 impl<'a> Frame<'a> {
-    /// Checks that the renderer was made for the scene.
+    /// Checks that the renderer was made for the scene. `shown` are the whole eyes of which the layer is a part.
     pub(super) fn new(
         renderer: &'a Renderer,
         scene: &'a GpuScene,
-        level: &LevelEyes,
+        layer: &ViewLayer,
+        shown: Option<&EyePair>,
         to: &'a [EyeTarget<'a>; 2],
     ) -> Result<Frame<'a>, StereoError> {
         renderer.check_scene(scene)?;
-        let convention = level.eyes.depth.convention;
-        let level = LevelEyes { eyes: reversed(&level.eyes), ..*level };
-        let scene = level.shown.map_or(scene.into(), |shown| LitScene::of_eyes(scene, &shown));
-        Ok(Frame { renderer, scene, pair: level.eyes, level, convention, to })
+        let convention = layer.eyes.depth.convention;
+        let layer = ViewLayer { eyes: reversed(&layer.eyes), ..*layer };
+        let scene = shown.map_or(scene.into(), |shown| LitScene::of_eyes(scene, shown));
+        let near = RefCell::new(None);
+        Ok(Frame { renderer, scene, pair: layer.eyes, layer, convention, to, near })
     }
 
-    /// Returns the eyes as a level, with reversed depth.
-    pub(super) fn level(&self) -> &LevelEyes {
-        &self.level
+    /// Gives the frame what measures the dominant eye's depth, if anything does.
+    pub(super) fn measured_by(self, near: Option<&'a mut NearSwitch>) -> Frame<'a> {
+        Frame { near: RefCell::new(near), ..self }
+    }
+
+    /// True if the dominant eye's depth is measured.
+    pub(super) fn measures_depth(&self) -> bool {
+        self.near.borrow().is_some()
+    }
+
+    /// Starts to measure the dominant eye's depth, from the image's origin on, if it is measured.
+    pub(super) fn measure_depth(&self, depth: &DepthImage) -> Result<(), GlError> {
+        let mut near = self.near.borrow_mut();
+        near.as_mut().map_or(Ok(()), |near| near.measure(depth, self.pair.size, &self.pair.depth))
+    }
+
+    /// Returns the eyes as a layer, with reversed depth.
+    pub(super) fn layer(&self) -> &ViewLayer {
+        &self.layer
     }
 
     /// Returns the view to render for both eyes, and how its pixels move.
     pub(super) fn synthesis_views(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
-        self.level.synthesis_views(guard)
+        self.layer.synthesis_views(guard)
     }
 
     /// Returns a depth range with the convention of the depth that targets receive.
@@ -58,18 +82,13 @@ impl<'a> Frame<'a> {
 
     /// Writes an eye's depth, if its target has depth.
     pub(super) fn write_depth(&self, eye: Eye, from: &DepthImage) {
-        write_depth(from, self.to(eye), self.convention);
+        if let Some(to) = &self.to(eye).depth {
+            to.copy.run(from, &to.to, self.convention);
+        }
     }
 }
 
 /// Returns the same eyes with reversed depth, which half floats and samples can carry.
-pub(super) fn reversed(pair: &EyePair) -> EyePair {
+fn reversed(pair: &EyePair) -> EyePair {
     EyePair { depth: DepthRange { convention: DepthConvention::Reversed, ..pair.depth }, ..*pair }
-}
-
-/// Writes an eye's depth in a convention, if the target has depth.
-pub(super) fn write_depth(from: &DepthImage, to: &EyeTarget, convention: DepthConvention) {
-    if let Some(to) = &to.depth {
-        to.copy.run(from, &to.to, convention);
-    }
 }

@@ -7,7 +7,7 @@
 use glam::IVec2;
 
 use super::frame::Frame;
-use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
+use super::method::{StereoError, StereoMethod};
 use crate::view::{GpuScene, Layout, Renderer, Targets};
 use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, Pose, View};
 
@@ -42,18 +42,10 @@ impl StereoMethod for Hybrid {
         Ok(())
     }
 
-    fn render_level(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        level: &LevelEyes,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.prepare(renderer, scene)?;
-        let frame = Frame::new(renderer, scene, level, to)?;
-        let Some([targets, far]) = &mut self.targets else { return Ok(()) };
+    fn render(&mut self, frame: &Frame) -> Result<bool, StereoError> {
+        let Some([targets, far]) = &mut self.targets else { return Ok(false) };
         let renderer = frame.renderer;
-        let fields = Fields::new(&frame.pair, self.threshold, scene)?;
+        let fields = Fields::new(&frame.pair, self.threshold, &frame.scene)?;
         if let Some(slice) = fields.split.far {
             renderer.draw_far(far, &frame.scene, &fields.view, slice)?;
         }
@@ -75,7 +67,7 @@ impl StereoMethod for Hybrid {
                 frame.write_depth(eye, &targets.depth(view.size, Eye::Left, [0, 0]));
             }
         }
-        Ok(())
+        Ok(false)
     }
 }
 

@@ -2,8 +2,10 @@
 
 use std::rc::Rc;
 
+use super::frame::Frame;
+use super::session::FrameTargets;
 use crate::view::{DepthCopy, GpuScene, Renderer};
-use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, Ndc, SynthesisViews, View};
+use yoro::eyes::{Eye, EyesError, Ndc, View};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Image, RenderTarget, Texture};
 
 /// The reason why a stereo frame could not be rendered.
@@ -39,6 +41,15 @@ impl StereoFrame {
     /// As [`RenderTarget::resize`].
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
         self.eyes.iter_mut().try_for_each(|eye| eye.resize(size))
+    }
+
+    /// Resizes the images, and returns them as targets of a frame, without depth.
+    ///
+    /// # Errors
+    /// As [`StereoFrame::resize`].
+    pub fn fit(&mut self, size: [u32; 2]) -> Result<FrameTargets<'static>, GlError> {
+        self.resize(size)?;
+        Ok(FrameTargets::Eyes(self.targets()))
     }
 
     /// Returns one eye's image.
@@ -126,140 +137,17 @@ pub struct MotionTarget {
     pub ndc: Ndc,
 }
 
-/// How much of its guard band a method with [`yoro::eyes::GuardBand::Auto`] drew in a frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GuardBandUse {
-    /// Columns that were drawn.
-    pub columns: u32,
-    /// Columns of the whole band.
-    pub most: u32,
-    /// Pixels at the other eye's border that were filled because their surfaces lie in the undrawn part of the band.
-    /// Estimated from the outermost drawn column.
-    pub undrawn: u32,
-}
-
-/// What a method says about a frame.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MethodReport {
-    /// The use of the guard band two frames before the last one, the newest that is measured. `None` for methods and
-    /// settings that always draw the whole band, and before the first measurement.
-    pub guard_band: Option<GuardBandUse>,
-    /// The reason why both eyes of the last frame were rendered instead of using the method, if they were.
-    pub substituted: Option<Substituted>,
-    /// True if the last frame's motion targets were filled. False if there were none, if the method fills none, or if the
-    /// eyes changed so much since the former frame that a runtime must not extrapolate this one.
-    pub has_motion: bool,
-}
-
-/// A reason for rendering both eyes.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Substituted {
-    /// Most of the view is too near, as [`NearFieldPolicy`](super::NearFieldPolicy) decides.
-    #[error("most of the view is too near")]
-    Near,
-    /// Neither eye can be synthesized from the other, as with canted eyes.
-    #[error(transparent)]
-    Eyes(#[from] EyesError),
-}
-
-/// The eyes that a method renders: all that is shown, or a level of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LevelEyes {
-    /// The eyes with the frusta and the size of the images.
-    pub eyes: EyePair,
-    /// The eyes of which these are a level; `None` if they are all that is shown.
-    pub shown: Option<EyePair>,
-    /// For an inset: the distance in metres from which on its source must be complete.
-    pub nearest: Option<f32>,
-}
-
-impl From<&EyePair> for LevelEyes {
-    fn from(eyes: &EyePair) -> LevelEyes {
-        LevelEyes { eyes: *eyes, shown: None, nearest: None }
-    }
-}
-
-impl LevelEyes {
-    /// Returns the view to render for both eyes. An inset has the guard band that it needs in place of `guard`.
-    ///
-    /// # Errors
-    /// Those of [`EyePair::synthesis_views`].
-    pub fn synthesis_views(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
-        match self.nearest {
-            Some(nearest) => self.eyes.inset_views(nearest),
-            None => self.eyes.synthesis_views(guard),
-        }
-    }
-}
-
-/// A method with its own programs and targets.
-pub trait StereoMethod {
-    /// Compiles what the method needs for the materials of a scene, so that the first frame of that scene need not.
+/// A method with its own programs and targets, which fit one layer of a frame.
+pub(super) trait StereoMethod {
+    /// Compiles what the method needs for the materials of a scene, unless it is compiled already.
     ///
     /// # Errors
     /// [`StereoError`] if GL refuses.
     fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError>;
 
-    /// Returns what there is to say about the last frames.
-    fn report(&self) -> MethodReport {
-        MethodReport::default()
-    }
-
-    /// Renders both eyes of a level into their targets, by [`Eye::index`]. A method whose targets fit one level is made for
-    /// each.
+    /// Renders both eyes of a layer into their targets. Returns true if motion vectors were written.
     ///
     /// # Errors
     /// [`StereoError`] if the method does not support the pair of eyes, or GL refuses.
-    fn render_level(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        level: &LevelEyes,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError>;
-
-    /// Renders both eyes of a frame into their targets, by [`Eye::index`].
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render_level`].
-    fn render_to(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.render_level(renderer, scene, &pair.into(), to)
-    }
-
-    /// Shows the last render again at the eyes' current poses. What moves goes on by `ahead` times its step between the last
-    /// two renders, 0.5 for the frame between two. Returns false if the method cannot do that, or if the last render does
-    /// not reach far enough; the caller must then render a frame.
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render_to`].
-    fn show_again(
-        &mut self,
-        _pair: &EyePair,
-        _to: &[EyeTarget; 2],
-        _ahead: f32,
-    ) -> Result<bool, StereoError> {
-        Ok(false)
-    }
-
-    /// Renders both eyes into a frame, which is resized to the pair's size.
-    ///
-    /// # Errors
-    /// As [`StereoMethod::render_to`].
-    fn render(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-        frame: &mut StereoFrame,
-    ) -> Result<(), StereoError> {
-        frame.resize(pair.size)?;
-        self.render_to(renderer, scene, pair, &frame.targets())
-    }
+    fn render(&mut self, frame: &Frame) -> Result<bool, StereoError>;
 }

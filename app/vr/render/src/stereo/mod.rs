@@ -1,13 +1,11 @@
 //! The stereo methods: ways to render the two eyes of a frame.
 
 mod auto;
-mod border;
 mod conventional;
+mod fallback;
 mod frame;
-mod guard_band;
-mod half_rate;
 mod hybrid;
-mod levels;
+mod images;
 mod method;
 mod mono;
 mod motion;
@@ -20,7 +18,9 @@ mod options;
 mod over;
 mod paper;
 mod pipeline;
+mod rate;
 mod readback;
+mod session;
 mod shading_reprojection;
 mod single_pass;
 mod still;
@@ -30,50 +30,41 @@ mod tests;
 
 use std::rc::Rc;
 
-use crate::view::{Layout, RenderSettings};
+use crate::view::Layout;
 use yoro_gl::{Context, GlError};
 
-pub use auto::{Auto, SelectedMethod, unfit};
+pub use auto::Auto;
 use conventional::Conventional;
-use half_rate::HalfRate;
+pub use fallback::{FallbackReason, alignment_error};
 use hybrid::Hybrid;
-pub use levels::{EyeLevels, LevelFrame, LevelTargets};
-pub use method::{
-    DepthTarget, EyeTarget, GuardBandUse, LevelEyes, MethodReport, MotionTarget, StereoError, StereoFrame,
-    StereoMethod, Substituted,
-};
+pub use images::StereoImages;
+use method::StereoMethod;
+pub use method::{DepthTarget, EyeTarget, MotionTarget, StereoError, StereoFrame};
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
-pub use options::{FramesBetween, Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
+pub use options::{Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 pub use pipeline::Synthesis;
+pub use session::{FrameLoad, FrameReport, FrameTargets, StereoSession};
 use shading_reprojection::ShadingReprojection;
 use single_pass::SinglePass;
 pub use still::stills;
 use synthesized::Synthesized;
 
 /// Makes a method and compiles what does not depend on the scene. [`StereoMethod::prepare`] compiles the rest.
-///
-/// # Errors
-/// [`GlError`] if the driver cannot run the method.
-pub fn create(
+fn create(
     gl: &Rc<Context>,
     method: Method,
-    settings: &RenderSettings,
     options: &StereoOptions,
 ) -> Result<Box<dyn StereoMethod>, GlError> {
-    settings.supports(method, gl.capabilities())?;
-    let is_half = options.frames_between == FramesBetween::Method;
     Ok(match method {
-        Method::Conventional if is_half => Box::new(HalfRate::new(gl, options, true)?),
         Method::Conventional => Box::new(Conventional::new(options)),
         Method::Instanced => Box::new(SinglePass::instanced(gl)),
         Method::Multiview => Box::new(SinglePass::new(Layout::Layered)),
         Method::ShadingReprojection => Box::new(ShadingReprojection::default()),
         Method::Hybrid => Box::new(Hybrid::new(options.split_disparity)),
         Method::Mono => Box::new(Mono::default()),
-        Method::Synthesized if is_half => Box::new(HalfRate::new(gl, options, false)?),
-        Method::Synthesized => Box::new(Synthesized::new(gl, options)?),
+        Method::Synthesized => Box::new(Synthesized::new(gl, options)),
     })
 }

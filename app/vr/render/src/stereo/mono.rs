@@ -1,7 +1,7 @@
 //! The dominant eye's view shown to both eyes: the lower bound of cost and quality.
 
 use super::frame::Frame;
-use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
+use super::method::{StereoError, StereoMethod};
 use crate::view::{GpuScene, Layout, Renderer, Targets};
 use yoro::eyes::{Eye, EyePair, GuardBand, View};
 
@@ -20,16 +20,8 @@ impl StereoMethod for Mono {
         Ok(())
     }
 
-    fn render_level(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        level: &LevelEyes,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.prepare(renderer, scene)?;
-        let frame = Frame::new(renderer, scene, level, to)?;
-        let Some(targets) = &mut self.targets else { return Ok(()) };
+    fn render(&mut self, frame: &Frame) -> Result<bool, StereoError> {
+        let Some(targets) = &mut self.targets else { return Ok(false) };
         let pair = &frame.pair;
         let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..*pair };
         let views = here.synthesis_views(GuardBand::None)?;
@@ -51,7 +43,7 @@ impl StereoMethod for Mono {
                 frame.write_depth(eye, &targets.depth(source.size, Eye::Left, origin));
             }
         }
-        Ok(())
+        Ok(false)
     }
 }
 

@@ -3,9 +3,9 @@
 use std::rc::Rc;
 
 use super::frame::Frame;
-use super::method::{LevelEyes, MotionTarget, StereoError};
+use super::method::{MotionTarget, StereoError};
 use crate::view::{DepthImage, Step, VectorPass};
-use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, VectorSpace, VectorsOf, View};
+use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, VectorSpace, VectorsOf, View, ViewLayer};
 use yoro::opengl::{Motion, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
@@ -91,7 +91,7 @@ impl SynthesizedMotion {
             other => other,
         };
         let views = [motion.now, motion.then]
-            .map(|eyes| LevelEyes { eyes, ..*frame.level() }.synthesis_views(guard_band));
+            .map(|eyes| ViewLayer { eyes, ..*frame.layer() }.synthesis_views(guard_band));
         let [Ok(now), Ok(then)] = views else { return Ok(false) };
         let ndc = motion.targets[dominant.other().index()].ndc;
         let warp = match now.motion(&then, VectorSpace { ndc, of: VectorsOf::Eye }) {

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use glam::{Quat, Vec3};
 
-use super::tests::{Rig, local, moving_scene, pair};
+use super::tests::{Rig, local, moving_scene, pair, session_of};
 use super::*;
 use crate::view::{DepthResolve, RenderSettings};
 use yoro::eyes::{DepthConvention, Eye, EyePair, Ndc, Pose};
@@ -17,7 +17,7 @@ const SIZE: [u32; 2] = [80, 60];
 fn vectors(
     gl: &Rc<Context>,
     rig: &mut Rig,
-    method: &mut dyn StereoMethod,
+    session: &mut StereoSession,
     [now, then]: [&EyePair; 2],
     ndc: Ndc,
 ) -> [Vec<[f32; 4]>; 2] {
@@ -30,8 +30,8 @@ fn vectors(
         former: then.view(eye),
         ndc,
     };
-    rig.render_with(method, now, |eye, to| EyeTarget { motion: Some(motion(eye)), ..to });
-    assert!(method.report().has_motion);
+    let report = rig.render_with(session, now, |eye, to| EyeTarget { motion: Some(motion(eye)), ..to });
+    assert!(report.has_motion);
     images.each_ref().map(|image| image.read_rgba32f(0, [2, 3], SIZE))
 }
 
@@ -52,8 +52,8 @@ fn vectors_of_both_eyes_are_those_of_two_renders() {
         (Eye::Right, DepthConvention::Reversed, Ndc::ZeroToOne),
     ] {
         let settings = local();
-        let options = StereoOptions { frames_between: FramesBetween::Runtime, ..StereoOptions::default() };
-        let create = |method| create(gl, method, &settings, &options).unwrap();
+        let options = StereoOptions { motion_vectors: true, ..StereoOptions::default() };
+        let create = |method| session_of(gl, method, &settings, &options);
         let mut rig = Rig::of(gl, &settings, moving_scene());
         let now = pair(dominant, convention);
         let turn = Quat::from_rotation_y(0.02);
@@ -67,8 +67,8 @@ fn vectors_of_both_eyes_are_those_of_two_renders() {
         let [mut truth, mut one] = [create(Method::Conventional), create(Method::Synthesized)];
         rig.set_time(0.15);
         rig.set_time(0.17);
-        let expected = vectors(gl, &mut rig, truth.as_mut(), [&now, &then], ndc);
-        let got = vectors(gl, &mut rig, one.as_mut(), [&now, &then], ndc);
+        let expected = vectors(gl, &mut rig, &mut truth, [&now, &then], ndc);
+        let got = vectors(gl, &mut rig, &mut one, [&now, &then], ndc);
         for eye in Eye::BOTH {
             let (got, expected) = (&got[eye.index()], &expected[eye.index()]);
             let moving = expected.iter().filter(|v| v[3] == 1.0).count();
@@ -88,7 +88,7 @@ fn vectors_of_both_eyes_are_those_of_two_renders() {
         }
         // Nothing has moved.
         rig.set_time(0.17);
-        let still = vectors(gl, &mut rig, one.as_mut(), [&now, &now], ndc);
+        let still = vectors(gl, &mut rig, &mut one, [&now, &now], ndc);
         let largest = still.iter().flatten().map(|v| off(v, &[0.0; 4])).fold(0.0, f32::max);
         assert!(largest < 1e-3, "{largest}");
         // An eye that moved by itself has another law.
@@ -100,8 +100,7 @@ fn vectors_of_both_eyes_are_those_of_two_renders() {
             let target = Destination { framebuffer: None, origin: [0, 0], size: SIZE };
             EyeTarget { motion: Some(MotionTarget { to: target, former: raised.view(eye), ndc }), ..to }
         };
-        rig.render_with(one.as_mut(), &now, to);
-        assert!(!one.report().has_motion);
+        assert!(!rig.render_with(&mut one, &now, to).has_motion);
     }
     assert_eq!(gl.take_errors(), None);
 }
@@ -119,7 +118,7 @@ impl Observer for Counted {
 }
 
 /// At half the rate, frames compile nothing that can be prepared, and allocate nothing once each kind of frame was shown:
-/// with one depth a pixel and with two, by either eye's render and by both, whoever makes the frames between.
+/// with one depth a pixel and with two, by one eye's render and by both.
 #[test]
 fn frames_of_half_the_rate_compile_and_allocate_nothing() {
     let limits: [(Limit, DepthResolve); 2] = [
@@ -131,7 +130,7 @@ fn frames_of_half_the_rate_compile_and_allocate_nothing() {
         let gl = head.gl();
         let settings = RenderSettings { msaa: 4, ..local() };
         let mut rig = Rig::of(gl, &settings, moving_scene());
-        assert_eq!(rig.parts().0.nearest_depth(), way);
+        assert_eq!(rig.scene().renderer.nearest_depth(), way);
         let eyes = pair(Eye::Right, DepthConvention::Reversed);
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         let vectors = RenderTarget::new(gl, SIZE, &formats, Some(Format::Depth32F)).unwrap();
@@ -140,31 +139,19 @@ fn frames_of_half_the_rate_compile_and_allocate_nothing() {
             former: eyes.view(Eye::Left),
             ndc: Ndc::ZeroToOne,
         };
-        let shown = StereoFrame::new(gl, eyes.size).unwrap();
-        for (method, frames_between) in [Method::Conventional, Method::Synthesized]
-            .into_iter()
-            .flat_map(|m| [FramesBetween::Method, FramesBetween::Runtime].map(|by| (m, by)))
-        {
-            let what = format!("{way:?}, {method:?}, {frames_between:?}");
-            let options = StereoOptions { frames_between, ..StereoOptions::default() };
-            let mut subject = create(gl, method, &settings, &options).unwrap();
-            let (renderer, scene) = rig.parts();
-            subject.prepare(renderer, scene).unwrap();
+        for method in [Method::Conventional, Method::Synthesized] {
+            let what = format!("{way:?}, {method:?}");
+            let options = StereoOptions { motion_vectors: true, ..StereoOptions::default() };
+            let mut subject = session_of(gl, method, &settings, &options);
+            subject.prepare(rig.scene()).unwrap();
             let made = Rc::new(Cell::new(0));
             gl.set_observer(Some(Box::new(Counted(made.clone()))));
             let mut held = None;
             for i in 0..6 {
                 rig.set_time(0.12 + 0.01 * f64::from(i));
-                if frames_between == FramesBetween::Runtime {
-                    rig.render_with(subject.as_mut(), &eyes, |_, to| EyeTarget {
-                        motion: Some(motion),
-                        ..to
-                    });
-                    assert!(subject.report().has_motion, "{what}");
-                } else {
-                    rig.render(subject.as_mut(), &eyes);
-                    assert!(subject.show_again(&eyes, &shown.targets(), 0.5).unwrap(), "{what}");
-                }
+                let report =
+                    rig.render_with(&mut subject, &eyes, |_, to| EyeTarget { motion: Some(motion), ..to });
+                assert!(report.has_motion, "{what}");
                 assert_eq!(made.get(), 0, "{what}, frame {i}");
                 let now = (gl.object_count(), gl.texture_bytes());
                 assert!(i < 2 || *held.get_or_insert(now) == now, "{what}, frame {i}");

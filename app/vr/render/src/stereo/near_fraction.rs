@@ -17,7 +17,7 @@ const GRID: u32 = 16;
 pub(super) struct NearFraction {
     gl: Rc<Context>,
     program: DepthProgram,
-    readback: Readback<()>,
+    readback: Readback,
 }
 
 impl NearFraction {
@@ -53,7 +53,7 @@ impl NearFraction {
                 .set("near_depth", range.depth(distance))
                 .set("reversed", range.convention == DepthConvention::Reversed);
             gl.draw_screen();
-            readback.start(());
+            readback.start();
             Ok(())
         })
     }
@@ -61,7 +61,9 @@ impl NearFraction {
     /// Returns the result of the last but one [`NearFraction::measure`], from 0 to 1. Returns each result once.
     pub(super) fn take(&mut self) -> Option<f32> {
         let mut cells = [0u8; (GRID * GRID * 4) as usize];
-        self.readback.take(&mut cells)?;
+        if !self.readback.take(&mut cells) {
+            return None;
+        }
         let sum: u32 = cells.iter().step_by(4).map(|&c| c as u32).sum();
         Some(sum as f32 / (255 * GRID * GRID) as f32)
     }

@@ -5,6 +5,7 @@ use super::paper::PaperOptions;
 use crate::view::RenderSettings;
 use yoro::eyes::GuardBand;
 use yoro_gl::{Capabilities, GlError};
+use yoro_settings::FrameRate;
 pub use yoro_settings::{Method, MethodChoice, Pipeline};
 
 impl RenderSettings {
@@ -35,21 +36,6 @@ pub struct PipelineOptions {
     pub paper: PaperOptions,
 }
 
-/// Who makes the frames between those that are rendered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum FramesBetween {
-    /// Nobody: every frame is rendered.
-    #[default]
-    Nobody,
-    /// The method, of the last render ([`super::StereoMethod::show_again`]): [`Method::Synthesized`], without near field and
-    /// policy and not with [`Pipeline::Paper`], and [`Method::Conventional`].
-    Method,
-    /// The display's runtime, of motion vectors ([`super::MotionTarget`]): of [`Method::Synthesized`], without near field, and
-    /// of [`Method::Conventional`].
-    Runtime,
-}
-
 /// Settings of all methods.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
@@ -62,14 +48,14 @@ pub struct StereoOptions {
     pub near_field: Option<f32>,
     /// When to render both eyes of frames that are mostly too near; `None` for never.
     pub policy: Option<NearFieldPolicy>,
-    /// Who makes the frames between those that are rendered.
-    pub frames_between: FramesBetween,
+    /// True if the display's runtime makes frames from the motion vectors of rendered ones ([`super::MotionTarget`]), which
+    /// [`Method::Synthesized`] without near field and [`Method::Conventional`] then write.
+    pub motion_vectors: bool,
     /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
     /// `f_px * IPD / split_disparity` metres.
     pub split_disparity: f32,
-    /// For frames that may have an inset ([`super::EyeLevels`]): the distance in metres from which on the synthesized eye's
-    /// is complete. `None` if no frame has one.
-    pub inset: Option<f32>,
+    /// The rate of renders, where the display's runtime makes the other frames.
+    pub frame_rate: FrameRate,
 }
 
 impl Default for StereoOptions {
@@ -79,9 +65,9 @@ impl Default for StereoOptions {
             guard_band: GuardBand::Distance(1.0),
             near_field: None,
             policy: Some(NearFieldPolicy::default()),
-            frames_between: FramesBetween::Nobody,
+            motion_vectors: false,
             split_disparity: 1.0,
-            inset: None,
+            frame_rate: FrameRate::Full,
         }
     }
 }

@@ -5,20 +5,21 @@ use std::rc::Rc;
 use yoro_gl::{Context, Filter, Format, GlError, PixelBuffer, RenderTarget};
 
 /// An RGBA8 image that is drawn once a frame and read two frames later. By then the GPU has finished it, if the display
-/// paces the frames. A `T` describes what was drawn.
-pub(super) struct Readback<T> {
+/// paces the frames.
+pub(super) struct Readback {
     image: RenderTarget,
-    buffers: [(PixelBuffer, Option<T>); 2],
+    /// Each with true if it was filled since it was last read.
+    buffers: [(PixelBuffer, bool); 2],
     /// Index of the buffer that was filled first.
     first: usize,
 }
 
-impl<T> Readback<T> {
-    pub(super) fn new(gl: &Rc<Context>, size: [u32; 2]) -> Result<Readback<T>, GlError> {
+impl Readback {
+    pub(super) fn new(gl: &Rc<Context>, size: [u32; 2]) -> Result<Readback, GlError> {
         let buffer = || PixelBuffer::new(gl, (size[0] * size[1] * 4) as usize);
         Ok(Readback {
             image: RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Nearest)], None)?,
-            buffers: [(buffer()?, None), (buffer()?, None)],
+            buffers: [(buffer()?, false), (buffer()?, false)],
             first: 0,
         })
     }
@@ -28,25 +29,22 @@ impl<T> Readback<T> {
         &self.image
     }
 
-    /// Starts to read what was drawn, described by `drawn`.
-    pub(super) fn start(&mut self, drawn: T) {
-        let (buffer, kept) = &mut self.buffers[self.first];
+    /// Starts to read what was drawn.
+    pub(super) fn start(&mut self) {
+        let (buffer, is_filled) = &mut self.buffers[self.first];
         self.image.read_into(buffer);
-        *kept = Some(drawn);
+        *is_filled = true;
         self.first ^= 1;
     }
 
-    /// Returns the description of what was drawn at the last but one [`Readback::start`], once, and stores its texels
-    /// in `bytes`: zeros if the driver cannot provide them.
-    pub(super) fn take(&mut self, bytes: &mut [u8]) -> Option<T> {
-        let (buffer, kept) = &mut self.buffers[self.first];
-        let drawn = kept.take()?;
+    /// Stores the texels of the last but one [`Readback::start`] in `bytes`, zeros if the driver cannot provide them.
+    /// Returns false if they were read already.
+    pub(super) fn take(&mut self, bytes: &mut [u8]) -> bool {
+        let (buffer, is_filled) = &mut self.buffers[self.first];
+        if !std::mem::take(is_filled) {
+            return false;
+        }
         buffer.read(bytes);
-        Some(drawn)
-    }
-
-    /// Forgets what was drawn so far.
-    pub(super) fn forget(&mut self) {
-        self.buffers.iter_mut().for_each(|(_, kept)| *kept = None);
+        true
     }
 }

@@ -6,7 +6,7 @@
 //! second eye's geometry and the maps of its materials.
 
 use super::frame::Frame;
-use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
+use super::method::{StereoError, StereoMethod};
 use super::over::{Over, OverlaySurfaces};
 use crate::view::{GpuScene, Layout, Renderer, Reprojection, Targets};
 use yoro::eyes::{DisparityMap, Eye, GuardBand};
@@ -36,16 +36,8 @@ impl StereoMethod for ShadingReprojection {
         Ok(())
     }
 
-    fn render_level(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        level: &LevelEyes,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.prepare(renderer, scene)?;
-        let frame = Frame::new(renderer, scene, level, to)?;
-        let Some(Made { dominant, second, over }) = &mut self.made else { return Ok(()) };
+    fn render(&mut self, frame: &Frame) -> Result<bool, StereoError> {
+        let Some(Made { dominant, second, over }) = &mut self.made else { return Ok(false) };
         let (pair, renderer) = (&frame.pair, frame.renderer);
         // The law for the dominant eye's own image instead of one with both frusta: pixels outside of it are shaded.
         let views = pair.synthesis_views(GuardBand::None)?;
@@ -71,11 +63,11 @@ impl StereoMethod for ShadingReprojection {
         if wants_depth {
             frame.write_depth(other, &second.depth(view.size, Eye::Left, [0, 0]));
         }
-        let surfaces = OverlaySurfaces { near: None, transparent: scene.is_transparent_in(&view) };
-        let (place, has_depth) = over.begin(&frame, eye, &surfaces)?;
-        let part = surfaces.depth_part(&frame, eye).filter(|_| has_depth);
+        let surfaces = OverlaySurfaces { near: None, transparent: frame.scene.is_transparent_in(&view) };
+        let (place, has_depth) = over.begin(frame, eye, &surfaces)?;
+        let part = surfaces.depth_part(frame, eye).filter(|_| has_depth);
         renderer.develop(dominant, &view, Eye::Left, [0, 0], &place, part);
-        over.finish(&frame, eye, &surfaces);
-        Ok(())
+        over.finish(frame, eye, &surfaces);
+        Ok(false)
     }
 }

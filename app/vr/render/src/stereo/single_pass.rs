@@ -2,7 +2,7 @@
 //! for each eye.
 
 use super::frame::Frame;
-use super::method::{EyeTarget, LevelEyes, StereoError, StereoMethod};
+use super::method::{StereoError, StereoMethod};
 use crate::view::{GpuScene, Layout, Renderer, Seam, Targets};
 use yoro::eyes::Eye;
 use yoro_gl::Context;
@@ -39,16 +39,8 @@ impl StereoMethod for SinglePass {
         Ok(())
     }
 
-    fn render_level(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        level: &LevelEyes,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.prepare(renderer, scene)?;
-        let frame = Frame::new(renderer, scene, level, to)?;
-        let Some(targets) = &mut self.targets else { return Ok(()) };
+    fn render(&mut self, frame: &Frame) -> Result<bool, StereoError> {
+        let Some(targets) = &mut self.targets else { return Ok(false) };
         let views = Eye::BOTH.map(|eye| frame.pair.view(eye));
         let wants_depth = Eye::BOTH.iter().any(|eye| frame.wants_depth(*eye));
         frame.renderer.draw_all(targets, &frame.scene, &views, wants_depth, None)?;
@@ -61,6 +53,6 @@ impl StereoMethod for SinglePass {
                 frame.write_depth(eye, &targets.depth(view.size, eye, [0, 0]));
             }
         }
-        Ok(())
+        Ok(false)
     }
 }

@@ -2,8 +2,9 @@
 
 use std::rc::Rc;
 
-use super::{Method, Pipeline, StereoError, StereoFrame, StereoOptions, create};
-use crate::view::{GpuScene, RenderSettings, Renderer};
+use super::{Method, Pipeline, StereoError, StereoFrame, StereoOptions, StereoSession};
+use crate::prepared::PreparedScene;
+use crate::view::RenderSettings;
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro_assets::Scene;
 use yoro_gl::Context;
@@ -24,14 +25,13 @@ pub fn stills(
     let frustum = Frustum::symmetric(60f32.to_radians(), 1.0);
     let pair = EyePair::parallel(head, frustum, Ipd::DEFAULT.metres(), DepthRange::PAPER, size, Eye::Right);
     let settings = RenderSettings::default();
-    let scene = GpuScene::upload(gl, scene)?;
-    let mut renderer = Renderer::new(gl, &settings, &scene)?;
+    let mut scene = PreparedScene::new(gl, scene, &settings)?;
     let mut frame = StereoFrame::new(gl, size)?;
     let mut both = |&pipeline: &Pipeline| {
         // Never two renders, however near everything is.
         let options = StereoOptions { policy: None, ..StereoOptions::of_pipeline(pipeline) };
-        let mut method = create(gl, Method::Synthesized, &settings, &options)?;
-        method.render(&mut renderer, &scene, &pair, &mut frame)?;
+        let mut session = StereoSession::new(gl, Method::Synthesized.into(), &settings, &options)?;
+        session.frame(&mut scene, &pair.into(), frame.fit(size)?, None)?;
         Ok(Eye::BOTH.map(|eye| frame.eye(eye).read_rgba8(0, [0, 0], size)))
     };
     pipelines.iter().map(&mut both).collect()

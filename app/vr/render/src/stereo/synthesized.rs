@@ -2,22 +2,18 @@
 
 use std::rc::Rc;
 
-use super::conventional::Conventional;
 use super::frame::Frame;
-use super::guard_band::AutoGuardBand;
-use super::method::{EyeTarget, LevelEyes, MethodReport, StereoError, StereoMethod, Substituted};
+use super::method::{StereoError, StereoMethod};
 use super::motion::SynthesizedMotion;
-use super::near_field_policy::{FrameMode, NearFieldPolicy};
-use super::near_fraction::NearFraction;
-use super::options::{FramesBetween, Pipeline, PipelineOptions, StereoOptions};
+use super::options::{Pipeline, PipelineOptions, StereoOptions};
 use super::over::{Over, OverlaySurfaces};
 use super::pipeline::Synthesis;
-use crate::view::{DepthResolve, DrawRequest, GpuScene, Layout, Renderer, Selection, Targets};
-use yoro::eyes::{Eye, EyePair, GuardBand, SynthesisViews};
+use crate::view::{DepthResolve, GpuScene, Layout, Renderer, Selection, Targets};
+use yoro::eyes::{Eye, EyePair};
 use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
 
-/// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects and near frames.
+/// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects.
 ///
 /// Bloom is added where an eye is written last: by the synthesis, and where the rendered eye is developed. Near objects
 /// and transparent surfaces are drawn over both in the same passes.
@@ -25,12 +21,8 @@ pub struct Synthesized {
     gl: Rc<Context>,
     options: StereoOptions,
     made: Option<Made>,
-    auto_guard_band: Option<AutoGuardBand>,
-    switch: Option<Switch>,
     /// Made if a runtime makes frames of motion vectors.
     motion: Option<SynthesizedMotion>,
-    /// True if the last frame's vectors were written.
-    has_motion: bool,
 }
 
 /// What depends on the renderer.
@@ -51,14 +43,6 @@ struct Synthesizers {
     /// True if the source lacks its bloom.
     bloom: bool,
     made: [Option<Box<dyn Synthesis>>; 2],
-}
-
-/// The automatic switch to two renders.
-struct Switch {
-    policy: NearFieldPolicy,
-    mode: FrameMode,
-    fraction: NearFraction,
-    conventional: Conventional,
 }
 
 impl Synthesizers {
@@ -82,25 +66,8 @@ impl Synthesizers {
 
 impl Synthesized {
     /// Makes the method without what depends on the renderer.
-    pub(super) fn new(gl: &Rc<Context>, options: &StereoOptions) -> Result<Synthesized, GlError> {
-        let switch = options.policy.map(|policy| -> Result<_, GlError> {
-            Ok(Switch {
-                policy,
-                mode: FrameMode::default(),
-                fraction: NearFraction::new(gl)?,
-                conventional: Conventional::new(options),
-            })
-        });
-        let is_auto = matches!(options.guard_band, GuardBand::Auto(_));
-        Ok(Synthesized {
-            gl: gl.clone(),
-            options: *options,
-            made: None,
-            auto_guard_band: is_auto.then(|| AutoGuardBand::new(gl)).transpose()?,
-            switch: switch.transpose()?,
-            motion: None,
-            has_motion: false,
-        })
+    pub(super) fn new(gl: &Rc<Context>, options: &StereoOptions) -> Synthesized {
+        Synthesized { gl: gl.clone(), options: *options, made: None, motion: None }
     }
 
     /// True if the picture is complete before the synthesis, as in the paper, instead of being developed after it.
@@ -108,104 +75,10 @@ impl Synthesized {
         self.options.synthesis.pipeline == Pipeline::Paper
     }
 
-    /// Renders both eyes if the last frames were mostly too near. Returns true if it did.
-    fn render_both(&mut self, frame: &Frame) -> Result<bool, StereoError> {
-        let Some(Switch { policy, mode, fraction, conventional }) = &mut self.switch else {
-            return Ok(false);
-        };
-        if let Some(fraction) = fraction.take() {
-            *mode = policy.next(*mode, fraction);
-        }
-        if *mode != FrameMode::BothRendered {
-            return Ok(false);
-        }
-        if let Some(auto) = &mut self.auto_guard_band {
-            auto.interrupt();
-        }
-        let pair = &frame.pair;
-        conventional.make(frame.renderer)?;
-        conventional.render_eyes(
-            frame,
-            |eye| eye == pair.dominant,
-            |depth| fraction.measure(depth, pair.size, &pair.depth, policy.distance),
-        )?;
-        Ok(true)
-    }
-
     /// Returns the objects that are synthesized.
     fn selection(&self, pair: &EyePair) -> Selection {
         let from = pair.middle();
         self.options.near_field.map_or(Selection::All, |distance| Selection::Farther { from, distance })
-    }
-
-    /// Starts the measurements that later frames depend on: how wide the guard band must be, and how much of the view
-    /// is near.
-    fn measure(&mut self, frame: &Frame, views: &SynthesisViews) -> Result<(), GlError> {
-        let Some(Made { targets, .. }) = &self.made else { return Ok(()) };
-        let (pair, size) = (&frame.pair, views.source.size);
-        if let Some(auto) = &mut self.auto_guard_band {
-            auto.measure(&targets.depth(size, Eye::Left, [0, 0]), views)?;
-        }
-        if let Some(switch) = &mut self.switch {
-            // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
-            let depth = targets.depth(size, Eye::Left, views.dominant_crop);
-            switch.fraction.measure(&depth, pair.size, &pair.depth, switch.policy.distance)?;
-        }
-        Ok(())
-    }
-
-    fn render_frame(&mut self, frame: &Frame) -> Result<(), StereoError> {
-        let pair = &frame.pair;
-        let renderer = frame.renderer;
-        let [dominant, other] = [pair.dominant, pair.dominant.other()];
-        let views = frame.synthesis_views(self.options.guard_band)?;
-        self.has_motion = false;
-        if self.render_both(frame)? {
-            return Ok(());
-        }
-        let from = pair.middle();
-        let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
-        let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
-        let surfaces = OverlaySurfaces { near, transparent };
-        let request = DrawRequest {
-            selection: self.selection(pair),
-            columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(pair, &views, &frame.scene)),
-        };
-        let develops_first = self.develops_first();
-        let Some(Made { targets, over, synthesizers, guess }) = &mut self.made else { return Ok(()) };
-        renderer.draw_source(targets, &frame.scene, &views.source, &request)?;
-        let is_developed = develops_first && renderer.develops();
-        if is_developed {
-            let to = Destination::whole(targets.picture(views.source.size)?);
-            renderer.develop(targets, &views.source, Eye::Left, [0, 0], &to, None);
-        }
-        let picture = targets.developed.as_ref().filter(|_| is_developed).unwrap_or(targets.color());
-        let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
-        let mut source = Source::new(picture.color(0).raw(), depth.texture.raw());
-        if let Some(guess) = guess {
-            source = guess.guess(source, &views.warp)?;
-        }
-        // The other eye first: both are finished in the same samples.
-        let (to, has_depth) = over.begin(frame, other, &surfaces)?;
-        let synthesis = synthesizers.get(has_depth)?;
-        source.bloom = targets
-            .bloom
-            .as_ref()
-            .filter(|_| !is_developed)
-            .map(|bloom| Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() });
-        synthesis.synthesize(source, &views.warp, &to)?;
-        over.finish(frame, other, &surfaces);
-        self.measure(frame, &views)?;
-        let Some(Made { targets, over, .. }) = &mut self.made else { return Ok(()) };
-        let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
-        let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
-        renderer.develop(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
-        over.finish(frame, dominant, &surfaces);
-        if let Some(motion) = &mut self.motion {
-            let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
-            self.has_motion = motion.write(frame, (&depth, &views.source), self.options.guard_band)?;
-        }
-        Ok(())
     }
 }
 
@@ -231,15 +104,8 @@ impl StereoMethod for Synthesized {
             }),
         };
         // With a near field, the source lacks what is near, and its vectors.
-        let has_vectors = self.options.frames_between == FramesBetween::Runtime;
-        if self.motion.is_none() && has_vectors && self.options.near_field.is_none() {
+        if self.motion.is_none() && self.options.motion_vectors && self.options.near_field.is_none() {
             self.motion = Some(SynthesizedMotion::new(&self.gl, pairs)?);
-        }
-        if let Some(auto) = &mut self.auto_guard_band {
-            auto.prepare(pairs)?;
-        }
-        if let Some(switch) = &mut self.switch {
-            switch.fraction.prepare(pairs)?;
         }
         for depth in [false, true].into_iter().take(1 + usize::from(has_over)) {
             made.synthesizers.get(depth)?;
@@ -247,26 +113,47 @@ impl StereoMethod for Synthesized {
         Ok(())
     }
 
-    fn report(&self) -> MethodReport {
-        let has_switched = |switch: &Switch| switch.mode == FrameMode::BothRendered;
-        MethodReport {
-            guard_band: self.auto_guard_band.as_ref().and_then(AutoGuardBand::last),
-            substituted: self.switch.as_ref().is_some_and(has_switched).then_some(Substituted::Near),
-            has_motion: match self.switch.as_ref().filter(|switch| has_switched(switch)) {
-                Some(switch) => switch.conventional.has_motion(),
-                None => self.has_motion,
-            },
+    fn render(&mut self, frame: &Frame) -> Result<bool, StereoError> {
+        let pair = &frame.pair;
+        let renderer = frame.renderer;
+        let [dominant, other] = [pair.dominant, pair.dominant.other()];
+        let views = frame.synthesis_views(self.options.guard_band)?;
+        let from = pair.middle();
+        let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
+        let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
+        let surfaces = OverlaySurfaces { near, transparent };
+        let selection = self.selection(pair);
+        let develops_first = self.develops_first();
+        let Some(Made { targets, over, synthesizers, guess }) = &mut self.made else { return Ok(false) };
+        renderer.draw_source(targets, &frame.scene, &views.source, selection)?;
+        let is_developed = develops_first && renderer.develops();
+        if is_developed {
+            let to = Destination::whole(targets.picture(views.source.size)?);
+            renderer.develop(targets, &views.source, Eye::Left, [0, 0], &to, None);
         }
-    }
-
-    fn render_level(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        level: &LevelEyes,
-        to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        self.prepare(renderer, scene)?;
-        self.render_frame(&Frame::new(renderer, scene, level, to)?)
+        let picture = targets.developed.as_ref().filter(|_| is_developed).unwrap_or(targets.color());
+        let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
+        let mut source = Source::new(picture.color(0).raw(), depth.texture.raw());
+        if let Some(guess) = guess {
+            source = guess.guess(source, &views.warp)?;
+        }
+        // The other eye first: both are finished in the same samples.
+        let (to, has_depth) = over.begin(frame, other, &surfaces)?;
+        let synthesis = synthesizers.get(has_depth)?;
+        source.bloom = targets.bloom.as_ref().filter(|_| !is_developed).map(|bloom| {
+            Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() }
+        });
+        synthesis.synthesize(source, &views.warp, &to)?;
+        over.finish(frame, other, &surfaces);
+        // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
+        frame.measure_depth(&targets.depth(views.source.size, Eye::Left, views.dominant_crop))?;
+        let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
+        let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
+        renderer.develop(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
+        over.finish(frame, dominant, &surfaces);
+        let Some(motion) = &mut self.motion else { return Ok(false) };
+        let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
+        motion.write(frame, (&depth, &views.source), self.options.guard_band)
     }
 }
+

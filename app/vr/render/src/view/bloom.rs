@@ -77,8 +77,6 @@ pub struct Shining<'a> {
     pub origin: [u32; 2],
     /// Width and height of the view.
     pub size: [u32; 2],
-    /// The columns `[first, end]` of the view that count; the edge columns are repeated beside them.
-    pub columns: [u32; 2],
 }
 
 /// Spreads light that is brighter than white over its surroundings.
@@ -148,12 +146,12 @@ impl BloomPass {
 
 /// Sets the uniforms of the first step.
 fn set_part(program: &Program, shining: &Shining, exposure: f32) {
-    let Shining { picture, layer, origin, size, columns: [first, end] } = *shining;
+    let Shining { picture, layer, origin, size } = *shining;
     let texel = 1.0 / Vec2::from(picture.size().map(|n| n as f32));
     let place = |v: [u32; 2]| Vec2::from(v.map(|n| n as f32)) * texel;
     let (corner, extent) = (place(origin), place(size));
-    let low = place([origin[0] + first, origin[1]]) + 0.5 * texel;
-    let high = place([origin[0] + end, origin[1] + size[1]]) - 0.5 * texel;
+    let low = corner + 0.5 * texel;
+    let high = place([origin[0] + size[0], origin[1] + size[1]]) - 0.5 * texel;
     program
         .set("exposure", exposure)
         .set("color_layer", layer.unwrap_or(0) as i32)

@@ -11,7 +11,7 @@ use super::light_tiles::LightTiles;
 use super::lights::Lights;
 use super::lit::LitScene;
 use super::renderer::{Develop, Outlines, Renderer, Resolve};
-use super::request::Rectangle;
+use super::rectangle::Rectangle;
 use super::scene::{FREE_UNIT, GpuScene};
 use super::shadow::ShadowMap;
 use super::targets::{Onto, Targets};
@@ -337,7 +337,6 @@ impl Renderer {
                 layer: targets.color_layer(eye),
                 origin: targets.layout().origin(view.size, eye),
                 size: view.size,
-                columns: targets.request.columns.map_or([0, view.size[0]], |columns| columns.always),
             };
             pass.run(bloom, &shining, self.settings.exposure);
         }

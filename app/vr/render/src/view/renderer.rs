@@ -9,13 +9,12 @@ use std::rc::Rc;
 
 use super::bloom::{self, BloomPass};
 use super::carry::CarryPass;
-use super::cluster::Selection;
+use super::cluster::{Culler, Selection};
 use super::depth::{DepthImage, DepthResolve};
 use super::geometry::{GeometryPass, Part, Variant};
 use super::layout::Layout;
 use super::lights::Lights;
 use super::lit::LitScene;
-use super::request::DrawRequest;
 use super::scene::GpuScene;
 use super::settings::{MAX_POINT_LIGHTS, RenderSettings};
 use super::shadow::ShadowMap;
@@ -179,7 +178,7 @@ impl Renderer {
         selection: Selection,
     ) -> Result<RenderedView<'a>, GlError> {
         let targets = self.fitting(targets, scene)?;
-        self.draw_source(targets, &scene.into(), view, &DrawRequest { selection, columns: None })?;
+        self.draw_source(targets, &scene.into(), view, selection)?;
         self.complete(targets, view)
     }
 
@@ -384,19 +383,12 @@ impl Renderer {
         targets: &mut Targets,
         scene: &LitScene,
         view: &View,
-        request: &DrawRequest,
+        selection: Selection,
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
-        targets.request = *request;
-        let drawn = request.bounds(view);
-        let culler = request.culler(view);
-        self.gl.within_columns(drawn, || {
-            self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
-        });
+        let culler = Culler::selecting(view, selection);
+        self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
         self.resolve(targets, view, true, self.ink, None)?;
-        if let Some(drawn) = drawn {
-            targets.repeat_columns(drawn)?;
-        }
         self.shine(targets, view, Eye::Left);
         Ok(())
     }
@@ -414,8 +406,7 @@ impl Renderer {
         let view = &views[0];
         let to = to.filter(|_| !self.develops() && !self.ink);
         let direct = targets.fit(view, scene.detail(view), self.needs(depth), to)?;
-        targets.request = DrawRequest::default();
-        let culler = super::cluster::Culler::of_view(view);
+        let culler = Culler::of_view(view);
         let part = match views.len() {
             1 => Part::Selected(&culler),
             _ => Part::Slice([view.depth.near, view.depth.far]),

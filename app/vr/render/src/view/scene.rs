@@ -8,7 +8,7 @@ use glam::{BVec3, Vec2, Vec3, Vec4};
 use super::cluster::{self, Batch, Cluster, Culler, VERTEX_ATTRIBUTES};
 use super::coverage;
 use super::moving::Moving;
-use super::request::Rectangle;
+use super::rectangle::Rectangle;
 use super::uniforms::eye_to_clip;
 use yoro::eyes::{DepthRange, View};
 use yoro_assets::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};

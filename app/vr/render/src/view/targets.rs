@@ -5,7 +5,6 @@ use std::rc::Rc;
 use super::bloom::BloomTargets;
 use super::depth::{DepthImage, DepthResolve};
 use super::layout::Layout;
-use super::request::DrawRequest;
 use super::settings::{RenderSettings, SAMPLE_DEPTH};
 use crate::stereo::EyeTarget;
 use yoro::eyes::{DepthConvention, Eye, View};
@@ -59,16 +58,12 @@ pub struct Targets {
     pub bloom: Option<BloomTargets>,
     /// The complete picture of a view, made when first needed.
     pub developed: Option<RenderTarget>,
-    /// The request that the view in the targets was rendered for.
-    pub request: DrawRequest,
     /// The [detail](super::lit::LitScene::detail) of the view in the targets.
     pub detail: f32,
     /// The depth convention of the view in the targets.
     pub convention: DepthConvention,
     /// True if the current depth belongs to what was drawn last.
     pub has_depth: bool,
-    /// One column of colour, copied into the columns beside those that are drawn.
-    column: Option<RenderTarget>,
 }
 
 impl Targets {
@@ -100,11 +95,9 @@ impl Targets {
             inked: None,
             bloom: settings.bloom.then(|| BloomTargets::new(gl)).transpose()?,
             developed: None,
-            request: DrawRequest::default(),
             detail: 1.0,
             convention: DepthConvention::Reversed,
             has_depth: false,
-            column: None,
         })
     }
 
@@ -188,34 +181,6 @@ impl Targets {
     pub fn ink_picture(&mut self) -> Result<&RenderTarget, GlError> {
         let size = self.resolved.size();
         picture(&self.gl, &mut self.inked, size)
-    }
-
-    /// Fills the resolved colour to the left of columns `[first, end]` with the first of them, and to the right with
-    /// the last.
-    pub fn repeat_columns(&mut self, [first, end]: [u32; 2]) -> Result<(), GlError> {
-        let [width, height] = self.resolved.size();
-        if self.column.is_none() {
-            let formats = [(Format::Rgba8, Filter::Nearest)];
-            self.column = Some(RenderTarget::new(&self.gl, [1, height], &formats, None)?);
-        }
-        let Some(column) = &mut self.column else { return Ok(()) };
-        column.resize([1, height])?;
-        let column = Destination::whole(column);
-        let part = |x: u32, width: u32| Destination {
-            origin: [x, 0],
-            size: [width, height],
-            ..Destination::whole(&self.resolved)
-        };
-        self.gl.pass("repeat", || {
-            for (from, to, columns) in [(first, 0, first), (end - 1, end, width - end)] {
-                if columns > 0 {
-                    // OpenGL ES cannot copy within one image.
-                    self.gl.copy(&part(from, 1), &column);
-                    self.gl.copy(&column, &part(to, columns));
-                }
-            }
-        });
-        Ok(())
     }
 
     /// Returns which views the targets hold.

@@ -40,14 +40,6 @@ struct Stage {
     nanoseconds: u64,
 }
 
-/// Use of the guard band, summed over frames.
-#[derive(Clone, Copy, Debug, Default)]
-struct GuardBandSum {
-    frames: u32,
-    columns: u64,
-    undrawn: u64,
-}
-
 /// Collects frames and device states.
 pub struct Telemetry {
     begin_ns: Option<i64>,
@@ -55,7 +47,6 @@ pub struct Telemetry {
     second: FrameStatistics,
     stages: Vec<Stage>,
     timed_frames: u32,
-    guard_band: Option<GuardBandSum>,
     process: ProcessSample,
     process_ns: Option<i64>,
     normalizer: CurrentNormalizer,
@@ -70,7 +61,6 @@ impl Default for Telemetry {
             second: FrameStatistics::with_capacity(FRAMES),
             stages: Vec::with_capacity(32),
             timed_frames: 0,
-            guard_band: None,
             process: ProcessSample::default(),
             process_ns: None,
             normalizer: CurrentNormalizer::default(),
@@ -101,15 +91,6 @@ impl Telemetry {
                 None => self.stages.push(Stage { name, nanoseconds }),
             }
         }
-    }
-
-    /// Adds a frame's use of a guard band with automatic width: the columns drawn, and the border pixels that were
-    /// filled instead of drawn.
-    pub fn guard_band(&mut self, columns: u32, undrawn: u32) {
-        let sum = self.guard_band.get_or_insert_default();
-        sum.frames += 1;
-        sum.columns += u64::from(columns);
-        sum.undrawn += u64::from(undrawn);
     }
 
     /// Pauses counting: the time until the next frame does not count.
@@ -144,7 +125,6 @@ impl Telemetry {
             .map(|s| StageTime { name: s.name.replace(' ', "-"), milliseconds: milliseconds(s.nanoseconds) })
             .collect();
         self.timed_frames = 0;
-        let guard_band = self.guard_band.take();
         let optional = |value: Option<f32>| value.filter(|v| v.is_finite()).map(f64::from);
         Line {
             time_s: self.seconds(now_ns),
@@ -176,8 +156,6 @@ impl Telemetry {
             status: device.status,
             run: viewer.run.clone(),
             performance: device.performance.map(str::to_owned),
-            guard_columns: guard_band.map(|sum| sum.columns as f64 / f64::from(sum.frames)),
-            undrawn: guard_band.map(|sum| sum.undrawn),
             auto: viewer.auto.clone(),
         }
     }

@@ -1,7 +1,7 @@
-//! The log line: `v=1,t=12.0s,method=yoro,FPS=71.9/72,Stale=1,...`.
+//! The log line: `v=2,t=12.0s,method=yoro,FPS=71.9/72,Stale=1,...`.
 //!
 //! [`LINE_KEYS`] is the one table of its keys. It is used for writing, for reading, and wherever else a line's values
-//! are used. Scripts rely on keys and units: changing one requires another [`VERSION`]; new keys are appended.
+//! are used. Scripts rely on keys and units: another set of keys requires another [`VERSION`]. New keys are appended.
 
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
@@ -86,11 +86,6 @@ pub struct Line {
     pub run: Option<String>,
     /// The performance modes in use: [`DeviceState::performance`](super::DeviceState::performance).
     pub performance: Option<String>,
-    /// Columns of the guard band that were drawn per frame; missing if its width is not automatic.
-    pub guard_columns: Option<f64>,
-    /// Number of pixels in this second at the other eye's border that were in the guard band but not drawn; they were
-    /// filled.
-    pub undrawn: Option<u64>,
     /// With `method=auto`, the reason for [`Line::method`], such as `6.1/8.9ms`; missing for a named method.
     pub auto: Option<String>,
 }
@@ -103,8 +98,6 @@ pub struct LineKey {
     pub decimals: usize,
     /// The unit after a number.
     pub unit: &'static str,
-    /// True if the key may be absent from a line, as in lines of earlier versions of this program.
-    may_be_absent: bool,
     get: fn(&Line) -> Value<'_>,
     /// Sets the value from a text without its unit, `None` for a missing value; returns false if it does not fit.
     set: fn(&mut Line, Option<&str>) -> bool,
@@ -135,7 +128,6 @@ macro_rules! number {
             name: $name,
             decimals: $decimals,
             unit: $unit,
-            may_be_absent: false,
             get: |line| line.$field.map_or(Value::Missing, |value| Value::$kind(value as _)),
             set: |line, text| number(text).map(|value| line.$field = value).is_some(),
         }
@@ -149,7 +141,6 @@ macro_rules! always {
             name: $name,
             decimals: $decimals,
             unit: $unit,
-            may_be_absent: false,
             get: |line| Value::Real(line.$field),
             set: |line, text| number(text).flatten().map(|value| line.$field = value).is_some(),
         }
@@ -163,7 +154,6 @@ macro_rules! name {
             name: $name,
             decimals: 0,
             unit: "",
-            may_be_absent: false,
             get: |line| Value::Text(&line.$field),
             set: |line, text| {
                 line.$field = text.unwrap_or(MISSING).into();
@@ -180,7 +170,6 @@ macro_rules! optional_name {
             name: $name,
             decimals: 0,
             unit: "",
-            may_be_absent: false,
             get: |line| line.$field.as_deref().map_or(Value::Missing, |name| Value::Text(short(name))),
             set: |line, text| {
                 line.$field = text.map(str::to_owned);
@@ -216,23 +205,20 @@ pub const LINE_KEYS: &[LineKey] = &[
     number!("headroom", Real, thermal_headroom, 2, ""),
     always!("scale", render_scale, 2, ""),
     number!("imbuffer", Integer, imbuffer, 0, ""),
-    LineKey { may_be_absent: true, ..number!("frames", Integer, frames, 0, "") },
+    number!("frames", Integer, frames, 0, ""),
     LineKey {
         name: "status",
         decimals: 0,
         unit: "",
-        may_be_absent: true,
         get: |line| line.status.map_or(Value::Missing, |status| Value::Text(status.name())),
         set: |line, text| {
             line.status = text.and_then(BatteryStatus::from_name);
             line.status.is_some() == text.is_some()
         },
     },
-    LineKey { may_be_absent: true, ..optional_name!("run", run) },
-    LineKey { may_be_absent: true, ..optional_name!("perf", performance) },
-    LineKey { may_be_absent: true, ..number!("guard", Real, guard_columns, 1, "") },
-    LineKey { may_be_absent: true, ..number!("undrawn", Integer, undrawn, 0, "") },
-    LineKey { may_be_absent: true, ..optional_name!("auto", auto) },
+    optional_name!("run", run),
+    optional_name!("perf", performance),
+    optional_name!("auto", auto),
 ];
 
 impl LineKey {
@@ -260,7 +246,6 @@ impl LineKey {
             "FPS" => Ok(rates(reader)?.0),
             REFRESH => Ok(rates(reader)?.1),
             GPU => Ok(gpu_times(reader)?.0),
-            name if self.may_be_absent => Ok(reader.text(name).unwrap_or(MISSING)),
             name => reader.text(name),
         }
     }
@@ -377,8 +362,6 @@ mod tests {
             status: Some(BatteryStatus::Discharging),
             run: Some("first".into()),
             performance: Some("sustained".into()),
-            guard_columns: Some(17.5),
-            undrawn: Some(0),
             auto: Some("6.1/8.9ms".into()),
             ..Line::default()
         }
@@ -388,7 +371,7 @@ mod tests {
     fn a_line_is_written_and_read_in_its_documented_form() {
         assert_eq!(
             example().to_string(),
-            "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first,perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms"
+            "v=2,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first,perf=sustained,auto=6.1/8.9ms"
         );
         assert_eq!(example().to_string().parse(), Ok(example()));
     }
@@ -422,10 +405,10 @@ mod tests {
             ..example()
         };
         let text = line.to_string();
-        let expected = "v=1,t=3600.0s,method=yoro,pipeline=gather,scene=prototype,FPS=60.0/60,Stale=4000000000,frame=16.68ms,p99=17.00ms,App=6.10ms(geometry=1.250,gather-march=0.500),CPU=141.1%,RSS=212.4MB,mA_raw=-9223372036854775808,mA=-512.0,mV=-1,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=-3.0C,thermal=6,headroom=0.42,scale=0.80,imbuffer=4,frames=72,status=not-charging,run=";
+        let expected = "v=2,t=3600.0s,method=yoro,pipeline=gather,scene=prototype,FPS=60.0/60,Stale=4000000000,frame=16.68ms,p99=17.00ms,App=6.10ms(geometry=1.250,gather-march=0.500),CPU=141.1%,RSS=212.4MB,mA_raw=-9223372036854775808,mA=-512.0,mV=-1,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=-3.0C,thermal=6,headroom=0.42,scale=0.80,imbuffer=4,frames=72,status=not-charging,run=";
         assert_eq!(
             text,
-            format!("{expected}{},perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms", "r".repeat(64))
+            format!("{expected}{},perf=sustained,auto=6.1/8.9ms", "r".repeat(64))
         );
         let read: Line = text.parse().unwrap();
         assert_eq!(read.to_string(), text);
@@ -457,8 +440,6 @@ mod tests {
             ("plug", 0.0),
             ("scale", 0.8),
             ("frames", 72.0),
-            ("guard", 17.5),
-            ("undrawn", 0.0),
         ];
         assert_eq!(numbers, expected);
     }
@@ -467,7 +448,7 @@ mod tests {
     fn unknown_values_are_na_and_not_zero() {
         let empty = Line { method: "yoro".into(), scene: "x".into(), ..Line::default() };
         let text = empty.to_string();
-        assert_eq!(text.matches("na").count(), 27, "{text}");
+        assert_eq!(text.matches("na").count(), 25, "{text}");
         assert_eq!(text.parse(), Ok(empty));
     }
 
@@ -479,22 +460,13 @@ mod tests {
     }
 
     #[test]
-    fn keys_of_later_versions_may_be_absent() {
-        let text = example().to_string();
-        let (early, _) = text.split_once(",frames=").unwrap();
-        let read: Line = early.parse().unwrap();
-        let early = Line { frames: None, status: None, run: None, performance: None, ..example() };
-        assert_eq!(read, Line { guard_columns: None, undrawn: None, auto: None, ..early });
-        assert!(text.replace("discharging", "disch").parse::<Line>().is_err());
-    }
-
-    #[test]
     fn damaged_lines_say_where() {
         let text = example().to_string();
         assert_eq!("FPS=72/72".parse::<Line>(), Err(LineError::Version));
         assert_eq!("".parse::<Line>(), Err(LineError::Version));
         assert_eq!(text[..40].parse::<Line>(), Err(LineError::Missing("scene")));
         assert_eq!(text[..80].parse::<Line>(), Err(LineError::Missing("frame")));
+        assert!(text.replace("discharging", "disch").parse::<Line>().is_err());
         let twisted = text.replace("3921", "39x1").parse::<Line>();
         assert_eq!(twisted, Err(LineError::Value { key: "mV", value: "39x1".into() }));
         assert!(text.replace(")", "").parse::<Line>().is_err());

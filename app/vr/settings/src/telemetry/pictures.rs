@@ -1,5 +1,5 @@
 //! The line about a pipeline's pictures:
-//! `pictures,v=1,pipeline=gather,rendered=48.20dB,synthesized=41.71dB,least=30.00dB,passed=true`.
+//! `pictures,v=2,pipeline=gather,rendered=48.20dB,synthesized=41.71dB,least=30.00dB,passed=true`.
 //!
 //! Scripts rely on its keys, as on those of [`Line`](super::Line).
 
@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn a_line_is_written_and_read_in_its_documented_form() {
         let text =
-            "pictures,v=1,pipeline=gather,rendered=48.20dB,synthesized=41.71dB,least=30.00dB,passed=true";
+            "pictures,v=2,pipeline=gather,rendered=48.20dB,synthesized=41.71dB,least=30.00dB,passed=true";
         let pictures = Pictures {
             pipeline: "gather".into(),
             rendered_db: Some(48.2),
@@ -106,11 +106,11 @@ mod tests {
     #[test]
     fn damaged_lines_are_refused() {
         let text =
-            "pictures,v=1,pipeline=gather,rendered=48.20dB,synthesized=41.71dB,least=30.00dB,passed=true";
+            "pictures,v=2,pipeline=gather,rendered=48.20dB,synthesized=41.71dB,least=30.00dB,passed=true";
         for cut in 0..text.len() {
             assert!(text[..cut].parse::<Pictures>().is_err(), "{}", &text[..cut]);
         }
-        for (from, to) in [("48.20dB", "x"), ("48.20dB", "infdB"), ("48.20dB", "8.20dB"), ("v=1", "v=2")] {
+        for (from, to) in [("48.20dB", "x"), ("48.20dB", "infdB"), ("48.20dB", "8.20dB"), ("v=2", "v=1")] {
             assert!(text.replace(from, to).parse::<Pictures>().is_err(), "{to}");
         }
     }

@@ -1,4 +1,4 @@
-//! The line with an answer: `rating,v=1,participant=P03,trial=4,method=yoro,...,question=image-quality,value=4.5`.
+//! The line with an answer: `rating,v=2,participant=P03,trial=4,method=yoro,...,question=image-quality,value=4.5`.
 //!
 //! Scripts rely on its keys, as on those of [`Line`](super::Line). The answer comes last and has one decimal, so that a
 //! truncated line is never taken for another answer.
@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn a_line_is_written_and_read_in_its_documented_form() {
-        let text = "rating,v=1,participant=P03,trial=4,method=yoro,pipeline=gather,scene=street,question=image-quality,value=4.5";
+        let text = "rating,v=2,participant=P03,trial=4,method=yoro,pipeline=gather,scene=street,question=image-quality,value=4.5";
         assert_eq!(example().to_string(), text);
         assert_eq!(text.parse(), Ok(example()));
         assert!(Rating::is_line(text) && !Rating::is_line("ratings"));
@@ -112,8 +112,8 @@ mod tests {
     #[test]
     fn damaged_lines_say_where() {
         let text = example().to_string();
-        assert_eq!("v=1,t=0".parse::<Rating>(), Err(LineError::Version));
-        assert_eq!(text.replace("v=1", "v=2").parse::<Rating>(), Err(LineError::Version));
+        assert_eq!("v=2,t=0".parse::<Rating>(), Err(LineError::Version));
+        assert_eq!(text.replace("v=2", "v=1").parse::<Rating>(), Err(LineError::Version));
         assert_eq!(text[..60].parse::<Rating>(), Err(LineError::Missing("scene")));
         for value in ["4.x", "4.", "4", "inf", "na"] {
             let twisted = text.replace("4.5", value).parse::<Rating>();

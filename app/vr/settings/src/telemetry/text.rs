@@ -4,7 +4,7 @@ use std::fmt::{self, Display};
 use std::str::FromStr;
 
 /// The version of all lines, as in the field `v`.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 /// The text of a missing value.
 pub(super) const MISSING: &str = "na";
 

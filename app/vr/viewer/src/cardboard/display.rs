@@ -10,6 +10,7 @@ use super::timewarp::PositionalTimewarp;
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
 use crate::frame::{FrameReport, FrameTiming};
+use crate::rate::log_full_rate;
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, Eye, EyePair, FoveationLevel, Pose};
 use yoro_gl::{Context, Destination, GlError};
@@ -72,6 +73,7 @@ impl Cardboard {
     /// [`ViewerError::Params`] and [`ViewerError::NoScene`] for mistakes in the settings.
     pub fn new(settings: Settings, screen: Screen, folders: &[PathBuf]) -> Result<Cardboard, ViewerError> {
         let params = ViewerParams::find_in(&settings.viewer, folders)?;
+        log_full_rate(&settings);
         let mut viewer = Viewer::new(settings, folders)?;
         viewer.set_native_ipd(Ipd::nearest(params.inter_lens));
         let metres = metres(viewer.settings(), &screen);

@@ -11,6 +11,7 @@ use super::graphics::make_current;
 use super::runtime::Runtime;
 use super::session::{Progress, Session};
 use crate::event::Event;
+use crate::rate::log_full_rate;
 use crate::viewer::Viewer;
 use yoro::eyes::FoveationLevel;
 use yoro_context::Graphics;
@@ -112,6 +113,9 @@ impl Headset {
     fn share_frames(&mut self) -> Result<(), XrError> {
         let makes_frames = self.session.as_ref().is_some_and(Session::makes_frames);
         let shows_insets = self.session.as_ref().is_some_and(Session::shows_insets);
+        if self.session.is_some() && !makes_frames {
+            log_full_rate(self.viewer.settings());
+        }
         let shared = self.viewer.share_with_runtime(makes_frames, shows_insets);
         shared.map_err(|error| XrError::Context(error.to_string()))
     }

@@ -71,18 +71,12 @@ impl Viewer {
             }
             return Ok(());
         };
-        if self.method.show_again(&self.settings, self.now_ns, levels, to)? {
-            return Ok(());
-        }
         shown.move_on(self.now_ns)?;
-        if let Some(used) = self.method.render(shown, levels, to)? {
-            self.stats.guard_band(used);
-        }
-        Ok(())
+        self.method.render(shown, levels, to)
     }
 
-    /// Says what the display's runtime does: whether it makes the frames between those that are rendered, of colour, depth
-    /// and motion vectors (otherwise the viewer makes them with `frame-rate=half`), and whether it shows insets.
+    /// Says what the display's runtime does: whether it makes the frames between those that are rendered, from colour, depth
+    /// and motion vectors, and whether it shows insets.
     ///
     /// # Errors
     /// [`ViewerError::Gl`] if the method cannot be compiled for this.

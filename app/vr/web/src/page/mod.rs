@@ -225,8 +225,7 @@ impl Page {
     /// A sentence.
     #[wasm_bindgen(js_name = setTime)]
     pub fn set_time(&mut self, seconds: f64) -> Result<(), JsError> {
-        let settings = self.settings;
-        self.scene().map_or(Ok(()), |scene| scene.set_time(&settings, seconds)).map_err(sentence)
+        self.scene().map_or(Ok(()), |scene| scene.prepared.set_time(seconds)).map_err(sentence)
     }
 
     /// Goes to a viewpoint of the scene, or to the position from which a video was taken.
@@ -236,7 +235,6 @@ impl Page {
             && let Some(viewpoint) = scene.prepared.scene.viewpoints.get(viewpoint)
         {
             self.walker = Walker::new(viewpoint.pose());
-            scene.jump();
             self.orbit(self.orbits);
             self.measure_again();
         }

@@ -101,7 +101,7 @@ impl Phone {
             Content::Scene(scene) => {
                 self.frame.resize(pair.size).map_err(sentence)?;
                 let to = self.frame.targets();
-                scene.render_levels(&page.settings, &(&pair).into(), &(&to).into()).map_err(sentence)?;
+                scene.render_levels(&(&pair).into(), &(&to).into()).map_err(sentence)?;
             }
             Content::Stream(stream) => {
                 self.frame.resize(pair.size).map_err(sentence)?;

@@ -13,9 +13,6 @@ use yoro_render::{PreparedScene, Renderer};
 
 use crate::settings::Settings;
 
-/// The part of the step between two renders at which the frame between them is.
-const BETWEEN: f32 = 0.5;
-
 /// Everything needed to show a scene.
 pub struct SceneShow {
     pub prepared: PreparedScene,
@@ -26,8 +23,6 @@ pub struct SceneShow {
     /// The eyes of that frame.
     pair: Option<EyePair>,
     passes: Vec<PassTime>,
-    /// True if the next frame is rendered: the last one showed the render before it again, or could not.
-    renders_next: bool,
 }
 
 /// A real render of both eyes, for comparison with the method's.
@@ -49,7 +44,6 @@ impl SceneShow {
             truth: None,
             pair: None,
             passes: Vec::new(),
-            renders_next: true,
         })
     }
 
@@ -109,40 +103,13 @@ impl SceneShow {
         truth.method.render(renderer, scene, &pair, &mut truth.frame)
     }
 
-    /// Renders both eyes in levels; with half the rate, every second frame shows the render before it again.
+    /// Renders both eyes in levels.
     ///
     /// # Errors
     /// Those of the method.
-    pub fn render_levels(
-        &mut self,
-        settings: &Settings,
-        levels: &EyeLevels,
-        to: &LevelTargets,
-    ) -> Result<(), StereoError> {
-        self.renders_next = self.repeats_next(settings);
-        if self.renders_next && self.method.show_levels_again(levels, to, BETWEEN)? {
-            return Ok(());
-        }
+    pub fn render_levels(&mut self, levels: &EyeLevels, to: &LevelTargets) -> Result<(), StereoError> {
         let PreparedScene { renderer, scene } = &mut self.prepared;
         self.method.render_levels(renderer, scene, levels, to)
-    }
-
-    /// Moves everything to its place at a time in seconds, unless the next frame is to show the render before it.
-    ///
-    /// # Errors
-    /// Those of the driver.
-    pub fn set_time(&mut self, settings: &Settings, seconds: f64) -> Result<(), GlError> {
-        if self.repeats_next(settings) { Ok(()) } else { self.prepared.set_time(seconds) }
-    }
-
-    /// True if the next frame is to show the render before it.
-    fn repeats_next(&self, settings: &Settings) -> bool {
-        settings.half_rate && !self.renders_next
-    }
-
-    /// Makes the next frame a render: after a jump, the last one shows another place.
-    pub fn jump(&mut self) {
-        self.renders_next = true;
     }
 
     /// Renders the last frame `count` more times, by the method or by two real renders, and waits for the GPU. Does

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use wasm_bindgen::prelude::*;
-use yoro::eyes::{EyePair, GuardBand};
+use yoro::eyes::EyePair;
 use yoro::opengl::{Gather, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
 use yoro_render::DepthCopy;
@@ -64,10 +64,7 @@ impl Why {
 fn explain(gl: &Rc<Context>, page: &mut Page, pair: &EyePair) -> Result<Option<Explanation>, StereoError> {
     let settings = page.settings;
     let options = settings.stereo_options();
-    let views = pair.synthesis_views(match options.guard_band {
-        GuardBand::Auto(distance) => GuardBand::Distance(distance),
-        band => band,
-    })?;
+    let views = pair.synthesis_views(options.guard_band)?;
     let wide = EyePair { size: views.source.size, frusta: [views.source.frustum; 2], ..*pair };
     let Content { frame, depth } = match render(gl, page, &wide, &options)? {
         Some(content) => content,

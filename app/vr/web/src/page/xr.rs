@@ -87,7 +87,7 @@ impl Headset {
                             none => none.insert(LevelFrame::new(&page.gl, false).map_err(sentence)?),
                         };
                         let to = frame.fit(&levels).map_err(sentence)?;
-                        scene.render_levels(&page.settings, &(&levels).into(), &to).map_err(sentence)?;
+                        scene.render_levels(&(&levels).into(), &to).map_err(sentence)?;
                         frame.compose(&[0, 1].map(|i| images[i].color_only()));
                         // Composed eyes have no depth: the browser moves them as if all were far away.
                         for image in images.iter().map(RenderTarget::depth_only) {
@@ -95,9 +95,7 @@ impl Headset {
                             page.gl.clear_rectangle(image.origin, image.size, Some(DEPTH.clear_value()));
                         }
                     }
-                    None => scene
-                        .render_levels(&page.settings, &(&pair).into(), &(&to).into())
-                        .map_err(sentence)?,
+                    None => scene.render_levels(&(&pair).into(), &(&to).into()).map_err(sentence)?,
                 }
                 fits = !matches!(scene.method.report().substituted, Some(Substituted::Eyes(_)));
             }

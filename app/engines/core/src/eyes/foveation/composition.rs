@@ -1,6 +1,6 @@
 //! The places of the levels in an eye's image.
 
-use super::{Eye, StereoViews, ViewLayer};
+use super::{Eye, GuardBand, StereoViews, ViewLayer};
 use crate::eyes::Frustum;
 
 /// The levels of one eye in its image, for the composer.
@@ -40,7 +40,7 @@ pub struct InsetPlace {
 
 impl StereoViews {
     /// Returns how an eye is composed of its levels. The levels' images are the crop of the rendered image for the
-    /// dominant eye ([`ViewLayer::origin`]), and the synthesized ones for the other.
+    /// dominant eye ([`SynthesisViews::dominant_crop`](crate::eyes::SynthesisViews::dominant_crop)), and the synthesized ones for the other.
     pub fn composition(&self, eye: Eye) -> Composition {
         let shown = &self.shown.frusta[eye.index()];
         let place =
@@ -48,29 +48,24 @@ impl StereoViews {
         let inset = self.inset.as_ref().map(|level| InsetPlace {
             place: place(level),
             fade: self.fade,
-            source: (eye != self.shown.dominant).then(|| level.source()),
+            source: (eye != self.shown.dominant).then(|| level.source()).flatten(),
         });
         Composition { size: self.shown.size, wide: place(&self.wide), inset }
     }
 }
 
 impl ViewLayer {
-    /// Returns the lower left corner of an eye's own image: in the rendered image for the dominant eye, in the
-    /// synthesized one for the other.
-    pub fn origin(&self, eye: Eye) -> [u32; 2] {
-        if eye == self.eyes.dominant { self.views.dominant_crop } else { [0, 0] }
-    }
-
-    /// Returns the numbers of [`InsetPlace::source`].
-    fn source(&self) -> [f64; 3] {
-        let warp = &self.views.warp;
+    /// Returns the numbers of [`InsetPlace::source`]; `None` for eyes that are not synthesized from each other.
+    fn source(&self) -> Option<[f64; 3]> {
+        // The guard band is that of an inset.
+        let warp = self.synthesis_views(GuardBand::None).ok()?.warp;
         let per_column = 2.0 / f64::from(warp.source_size[0]);
         // Indices of columns are half a pixel less than the places of their middles, in both images.
-        [
+        Some([
             f64::from(warp.target_size[0]) * per_column,
             -warp.law.offset * per_column - 1.0,
             -warp.law.scale * per_column,
-        ]
+        ])
     }
 }
 

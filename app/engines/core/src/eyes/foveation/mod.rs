@@ -110,26 +110,56 @@ pub enum Gaze {
     Direction(Vec3),
 }
 
-/// A level of a foveated pair of eyes.
+/// A layer of what both eyes see: all of it, or what lies around the gaze.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewLayer {
-    /// The eyes with this level's frusta and size.
+    /// The eyes with this layer's frusta and size.
     pub eyes: EyePair,
-    /// The view to render for this level, and how its pixels move to the other eye.
-    pub views: SynthesisViews,
+    /// For an inset, the distance in metres from which on the synthesized eye is complete. `None` for the layer that fills
+    /// the eyes' images.
+    pub nearest: Option<f32>,
 }
 
-/// The levels of a foveated pair of eyes ([`EyePair::levels`]).
+/// What both eyes see in a frame: one layer with all pixels, or a wide layer of few pixels and an inset of all of them
+/// where the eyes look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StereoViews {
     /// The eyes as they are shown.
     pub shown: EyePair,
-    /// The level that fills the eyes' images.
+    /// The layer that fills the eyes' images.
     pub wide: ViewLayer,
-    /// The level where the eyes look; `None` if the wide one has all pixels.
+    /// The layer where the eyes look; `None` if the wide one has all pixels.
     pub inset: Option<ViewLayer>,
-    /// Columns and rows of the inset over which it fades into the wide view; 0 for a hard seam.
+    /// Columns and rows of the inset over which it fades into the wide layer; 0 for a hard seam.
     pub fade: [f32; 2],
+}
+
+impl ViewLayer {
+    /// Returns the view to render for this layer, and how its pixels move to the other eye. `guard` is the guard band of the
+    /// wide layer; an inset has the band that it needs.
+    ///
+    /// # Errors
+    /// Those of [`EyePair::synthesis_views`].
+    pub fn synthesis_views(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
+        match self.nearest {
+            Some(nearest) => self.eyes.inset_views(nearest),
+            None => self.eyes.synthesis_views(guard),
+        }
+    }
+}
+
+impl From<EyePair> for StereoViews {
+    /// Returns the one layer that has all pixels.
+    fn from(shown: EyePair) -> StereoViews {
+        StereoViews { shown, wide: ViewLayer { eyes: shown, nearest: None }, inset: None, fade: [0.0; 2] }
+    }
+}
+
+impl StereoViews {
+    /// Returns the layers, the wide one first.
+    pub fn layers(&self) -> impl Iterator<Item = &ViewLayer> {
+        [Some(&self.wide), self.inset.as_ref()].into_iter().flatten()
+    }
 }
 
 /// A rectangle of pixels in an eye's image: its lower left corner, which may lie outside, and its size.
@@ -145,37 +175,22 @@ impl EyePair {
         self.poses.map(|pose| pose.forward())
     }
 
-    /// Returns the levels of these eyes: the whole view with fewer pixels, and an inset with all of them where the eyes
-    /// look, each with the view to render. `None`, or a foveation that would save no pixels, gives one level: the view
-    /// of [`EyePair::synthesis_views`]. `guard` is the guard band of the wide level.
+    /// Returns what these eyes see: a wide layer with fewer pixels, and an inset with all of them where the eyes look. One
+    /// layer without a foveation, and with one that would save no pixels.
     ///
     /// Sizes do not depend on a [`Gaze::Direction`]. The pixels of the inset are pixels of the eye's image.
     ///
     /// # Errors
-    /// [`EyesError::Foveation`]; those of [`EyePair::synthesis_views`] for either level.
-    pub fn levels(
-        &self,
-        foveation: Option<&Foveation>,
-        gaze: Gaze,
-        guard: GuardBand,
-    ) -> Result<StereoViews, EyesError> {
-        let whole = || {
-            let views = self.synthesis_views(guard)?;
-            Ok(StereoViews {
-                shown: *self,
-                wide: ViewLayer { eyes: *self, views },
-                inset: None,
-                fade: [0.0; 2],
-            })
-        };
-        let Some(foveation) = foveation else { return whole() };
+    /// [`EyesError::Foveation`]; [`EyesError`] for a view that cannot be rendered.
+    pub fn stereo_views(&self, foveation: Option<&Foveation>, gaze: Gaze) -> Result<StereoViews, EyesError> {
+        let Some(foveation) = foveation else { return Ok((*self).into()) };
         foveation.check()?;
         Eye::BOTH.iter().try_for_each(|&eye| self.view(eye).check())?;
         let insets = self.insets(foveation, gaze);
         let wide = self.coarse(foveation.density);
         let pixels = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
         if pixels(wide.size) + pixels(insets[0].size) >= pixels(self.size) {
-            return whole();
+            return Ok((*self).into());
         }
         let inset = EyePair {
             frusta: Eye::BOTH.map(|eye| self.frustum_of(eye, &insets[eye.index()])),
@@ -185,8 +200,8 @@ impl EyePair {
         let beyond = f64::from((foveation.radius + foveation.fade).tan() - foveation.radius.tan());
         Ok(StereoViews {
             shown: *self,
-            wide: ViewLayer { eyes: wide, views: wide.synthesis_views(guard)? },
-            inset: Some(ViewLayer { eyes: inset, views: inset.inset_views(foveation.nearest)? }),
+            wide: ViewLayer { eyes: wide, nearest: None },
+            inset: Some(ViewLayer { eyes: inset, nearest: Some(foveation.nearest) }),
             fade: self.density(self.dominant).map(|tangents| (beyond / tangents) as f32),
         })
     }

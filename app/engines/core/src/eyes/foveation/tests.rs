@@ -13,6 +13,8 @@ const HEADSETS: [([f32; 4], f32, [u32; 2]); 4] = [
     ([55.0, 42.0, 52.0, 52.0], 5.0, [640, 720]),
 ];
 
+const GUARD: GuardBand = GuardBand::Distance(1.0);
+
 /// Returns the eyes of a headset, and the same eyes made parallel.
 fn headset(([outer, inner, up, down], cant, size): ([f32; 4], f32, [u32; 2]), dominant: Eye) -> [EyePair; 2] {
     let head = Quat::from_euler(glam::EulerRot::YXZ, 0.4, -0.2, 0.1);
@@ -77,7 +79,7 @@ fn full_density_is_where_it_is_seen(
             checked += 1;
             let in_level = seen(&inset.eyes.poses[eye.index()], point);
             assert!(contains(&inset.eyes.frusta[eye.index()], in_level), "{what}, {eye:?}: {in_level:?}");
-            let source = &inset.views.source;
+            let source = &inset.synthesis_views(GUARD).unwrap().source;
             assert!(contains(&source.frustum, seen(&source.pose, point)), "{what}, {eye:?}, {z} m");
         }
     }
@@ -92,7 +94,7 @@ fn full_density_lies_around_each_eyes_axis() {
                 let [eyes, parallel] = headset(rig, dominant);
                 let foveation = level.foveation().unwrap();
                 let gaze = Gaze::Axes(eyes.axes());
-                let levels = parallel.levels(Some(&foveation), gaze, GuardBand::Distance(1.0)).unwrap();
+                let levels = parallel.stereo_views(Some(&foveation), gaze).unwrap();
                 let what = format!("headset {i}, {dominant:?}, {level:?}");
                 full_density_is_where_it_is_seen(&eyes, &levels, eyes.axes(), foveation.radius, &what);
             }
@@ -105,15 +107,15 @@ fn full_density_lies_around_each_eyes_axis() {
 fn the_band_of_the_inset_is_what_the_nearest_surface_needs() {
     let [eyes, _] = headset(HEADSETS[0], Eye::Right);
     let gaze = Gaze::Axes(eyes.axes());
-    let levels = eyes.levels(Some(&Foveation::MEDIUM), gaze, GuardBand::Distance(1.0)).unwrap();
+    let levels = eyes.stereo_views(Some(&Foveation::MEDIUM), gaze).unwrap();
     let inset = levels.inset.unwrap();
     // 2 tan 20° of 2 tan 45° of 512 pixels, from pixel to pixel.
     assert_eq!(inset.eyes.size, [188, 188]);
     let columns = 256.0 * MEAN_IPD / 0.5;
-    assert_eq!(inset.views.source.size, [188 + columns.ceil() as u32 + 1, 188]);
+    assert_eq!(inset.synthesis_views(GUARD).unwrap().source.size, [188 + columns.ceil() as u32 + 1, 188]);
     assert_eq!(levels.wide.eyes.size, [256, 256]);
     let whole = EyePair { size: [256, 256], ..eyes };
-    assert_eq!(levels.wide.views, whole.synthesis_views(GuardBand::Distance(1.0)).unwrap());
+    assert_eq!(levels.wide.synthesis_views(GUARD), whole.synthesis_views(GUARD));
     // The pixels of the inset are pixels of the eye's image.
     for eye in Eye::BOTH {
         let place = levels.composition(eye).inset.unwrap().place;
@@ -134,11 +136,12 @@ fn a_gaze_that_moves_changes_no_size() {
             let [_, eyes] = headset(rig, dominant);
             let levels = |direction: Vec3| {
                 let gaze = Gaze::Direction(eyes.poses[0].orientation * direction);
-                eyes.levels(Some(&foveation), gaze, GuardBand::Distance(1.0)).unwrap()
+                eyes.stereo_views(Some(&foveation), gaze).unwrap()
             };
             let sizes = |levels: &StereoViews| {
                 let inset = levels.inset.unwrap();
-                [levels.wide.views.source.size, inset.eyes.size, inset.views.source.size]
+                let sources = [levels.wide, inset].map(|layer| layer.synthesis_views(GUARD).unwrap().source.size);
+                [sources[0], inset.eyes.size, sources[1]]
             };
             let first = levels(Vec3::NEG_Z);
             let mut rng = rand_pcg::Pcg32::seed_from_u64(3);
@@ -196,11 +199,10 @@ fn insets_that_converge_need_no_more_columns() {
 #[test]
 fn one_level_is_what_is_rendered_today() {
     let [eyes, _] = headset(HEADSETS[1], Eye::Left);
-    let guard = GuardBand::Distance(1.0);
     let gaze = Gaze::Axes(eyes.axes());
-    let off = eyes.levels(FoveationLevel::Off.foveation().as_ref(), gaze, guard).unwrap();
+    let off = eyes.stereo_views(FoveationLevel::Off.foveation().as_ref(), gaze).unwrap();
     assert_eq!((off.wide.eyes, off.inset), (eyes, None));
-    assert_eq!(off.wide.views, eyes.synthesis_views(guard).unwrap());
+    assert_eq!(off.wide.synthesis_views(GUARD), eyes.synthesis_views(GUARD));
     for eye in Eye::BOTH {
         let place = LevelPlace { size: eyes.size, scale: [1.0; 2], offset: [0.0; 2] };
         assert_eq!(off.composition(eye), Composition { size: eyes.size, wide: place, inset: None });
@@ -208,7 +210,7 @@ fn one_level_is_what_is_rendered_today() {
     // An inset that would be nearly the whole view saves nothing.
     let narrow = EyeOptions::default().pair(Pose::IDENTITY);
     let low = FoveationLevel::Low.foveation();
-    assert_eq!(narrow.levels(low.as_ref(), Gaze::Axes(narrow.axes()), guard).unwrap().inset, None);
+    assert_eq!(narrow.stereo_views(low.as_ref(), Gaze::Axes(narrow.axes())).unwrap().inset, None);
 }
 
 /// Rows that fall between the rows of the coarser level are aligned anew.
@@ -219,7 +221,7 @@ fn eyes_with_shifted_rows_have_levels() {
     eyes.frusta[1].bottom += 3.0 * row;
     eyes.frusta[1].top += 3.0 * row;
     let gaze = Gaze::Axes(eyes.axes());
-    let levels = eyes.levels(Some(&Foveation::MEDIUM), gaze, GuardBand::Distance(1.0)).unwrap();
+    let levels = eyes.stereo_views(Some(&Foveation::MEDIUM), gaze).unwrap();
     full_density_is_where_it_is_seen(&eyes, &levels, eyes.axes(), Foveation::MEDIUM.radius, "rows");
     for eye in Eye::BOTH {
         let wide = levels.composition(eye).wide;
@@ -242,10 +244,10 @@ fn eyes_with_shifted_rows_have_levels() {
 fn the_source_of_a_pixel_is_where_the_matrices_put_it() {
     for dominant in Eye::BOTH {
         let [eyes, _] = headset(HEADSETS[1], dominant);
-        let levels = eyes.levels(Some(&Foveation::MEDIUM), Gaze::Axes(eyes.axes()), GuardBand::None).unwrap();
+        let levels = eyes.stereo_views(Some(&Foveation::MEDIUM), Gaze::Axes(eyes.axes())).unwrap();
         assert_eq!(levels.composition(dominant).inset.unwrap().source, None);
         let [across, offset, scale] = levels.composition(dominant.other()).inset.unwrap().source.unwrap();
-        let views = levels.inset.unwrap().views;
+        let views = levels.inset.unwrap().synthesis_views(GUARD).unwrap();
         let ndc = |view: &View, point: DVec3| {
             let clip = view.view_projection().as_dmat4() * point.extend(1.0);
             clip.truncate() / clip.w
@@ -275,10 +277,19 @@ fn impossible_foveations_are_refused() {
         Foveation { nearest: 0.0, ..own },
         Foveation { nearest: f32::INFINITY, ..own },
     ] {
-        let error = eyes.levels(Some(&foveation), Gaze::Axes(eyes.axes()), GuardBand::None).unwrap_err();
+        let error = eyes.stereo_views(Some(&foveation), Gaze::Axes(eyes.axes())).unwrap_err();
         assert_eq!(error, EyesError::Foveation, "{foveation:?}");
     }
+}
+
+/// Canted eyes have layers, though neither eye can be synthesized from the other.
+#[test]
+fn canted_eyes_have_layers() {
     let [canted, _] = headset(HEADSETS[3], Eye::Left);
-    let error = canted.levels(Some(&own), Gaze::Axes(canted.axes()), GuardBand::None).unwrap_err();
-    assert!(matches!(error, EyesError::Canted { .. }), "{error}");
+    let views = canted.stereo_views(Some(&Foveation::MEDIUM), Gaze::Axes(canted.axes())).unwrap();
+    for layer in views.layers() {
+        let error = layer.synthesis_views(GUARD).unwrap_err();
+        assert!(matches!(error, EyesError::Canted { .. }), "{error}");
+    }
+    assert_eq!(views.composition(Eye::Right).inset.unwrap().source, None);
 }

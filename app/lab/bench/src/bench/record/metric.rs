@@ -74,13 +74,6 @@ pub const FLICKERS: [&str; 4] = [FLICKER, FLICKER_HOLES, FLICKER_EDGES, FLICKER_
 /// The corresponding metrics of the ground truth, measured for `conventional`.
 pub const CHANGES: [&str; 4] = [CHANGE, CHANGE_HOLES, CHANGE_EDGES, CHANGE_REST];
 
-/// Number of columns of the guard band that were drawn in a frame.
-pub const GUARD_COLUMNS: &str = "guard_columns";
-/// Number of pixels in the guard band that were visible in a frame but not drawn.
-pub const UNDRAWN: &str = "undrawn";
-/// PSNR (RGB) in dB in the columns at the other eye's outer border that a guard band serves.
-pub const BORDER_PSNR: &str = "border_psnr";
-
 /// Pixels that are rendered, of those of two full eyes.
 pub const SHADED: &str = "shaded";
 /// PSNR (RGB) in dB and SSIM (gaussian, RGB) within 20 degrees of the axis, against a full render.

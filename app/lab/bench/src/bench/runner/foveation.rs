@@ -17,7 +17,7 @@ use yoro_files::interrupt;
 use yoro_gl::{Context, GlError};
 use yoro_metrics::{FlickerMeter, SsimWindow, psnr_where, ssim_where};
 use yoro_render::stereo::{
-    EyeLevels, EyeTarget, FramesBetween, LevelFrame, LevelTargets, Method, SelectedMethod, StereoError,
+    EyeLevels, EyeTarget, LevelFrame, LevelTargets, Method, SelectedMethod, StereoError,
     StereoFrame, StereoMethod, StereoOptions,
 };
 use yoro_render::{DepthReader, PreparedScene, Selection, ViewTargets};
@@ -94,24 +94,24 @@ impl Way {
     /// Returns every method with every level: by method, from all pixels to the fewest.
     fn all(gl: &Rc<Context>, job: &Job) -> Result<Vec<Way>, GlError> {
         let each = METHODS.into_iter().flat_map(|method| FoveationLevel::ALL.map(|level| (method, level)));
-        each.map(|(method, level)| Way::new(gl, job, method, level, FramesBetween::Nobody)).collect()
+        each.map(|(method, level)| Way::new(gl, job, method, level, false)).collect()
     }
 
     /// Returns both methods with one level.
     pub fn both(gl: &Rc<Context>, job: &Job, level: FoveationLevel) -> Result<Vec<Way>, GlError> {
-        METHODS.map(|method| Way::new(gl, job, method, level, FramesBetween::Nobody)).into_iter().collect()
+        METHODS.map(|method| Way::new(gl, job, method, level, false)).into_iter().collect()
     }
 
-    /// Makes a method with a level; `name` is that of all pixels.
+    /// Makes a method with a level; `name` is that of all pixels. `motion_vectors` as in [`StereoOptions`].
     pub fn new(
         gl: &Rc<Context>,
         job: &Job,
         (method, name): (Method, &str),
         level: FoveationLevel,
-        frames_between: FramesBetween,
+        motion_vectors: bool,
     ) -> Result<Way, GlError> {
         let inset = level.foveation().map(|foveation| foveation.nearest);
-        let options = StereoOptions { policy: None, inset, frames_between, ..StereoOptions::default() };
+        let options = StereoOptions { policy: None, inset, motion_vectors, ..StereoOptions::default() };
         Ok(Way {
             name: match level {
                 FoveationLevel::Off => name.to_owned(),
@@ -149,19 +149,6 @@ impl Way {
         self.method.render_levels(renderer, scene, &levels, &targets)?;
         self.compose(&levels, to);
         Ok(())
-    }
-
-    /// Shows the last render again; see [`StereoMethod::show_again`].
-    pub fn show_again(
-        &mut self,
-        pair: &EyePair,
-        to: &[EyeTarget; 2],
-        ahead: f32,
-    ) -> Result<bool, StereoError> {
-        let (levels, targets) = self.fit(pair, to)?;
-        let can = self.method.show_levels_again(&levels, &targets, ahead)?;
-        self.compose(&levels, to);
-        Ok(can)
     }
 
     /// True if the last frame's motion targets were filled.

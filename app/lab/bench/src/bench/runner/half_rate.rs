@@ -1,4 +1,4 @@
-//! Half the rate of renders: the frame between two, as a runtime makes it of both eyes or of one, and as yoro makes it.
+//! Half the rate of renders: the frame between two, as a runtime makes it of both eyes or of one.
 
 use std::rc::Rc;
 use std::time::{Duration, Instant};
@@ -19,7 +19,7 @@ use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, View};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_metrics::{Channels, SsimWindow, psnr, psnr_where, ssim};
-use yoro_render::stereo::{EyeTarget, FramesBetween, Method, MotionTarget, StereoFrame};
+use yoro_render::stereo::{EyeTarget, Method, MotionTarget, StereoFrame};
 use yoro_render::{DepthImage, DepthReader, PreparedScene};
 
 /// The ways of making the frame between. The runtime is emulated.
@@ -28,8 +28,6 @@ const ONE_EYE: &str = "runtime-one-eye";
 /// The colour of two eyes with the vectors and depth of one: what these alone lose.
 const VECTORS: &str = "runtime-made-vectors";
 const ROTATION: &str = "rotation";
-const DEPTH: &str = "depth-alone";
-const ANY_VIEW: &str = "any-view";
 /// The same frame rendered: by yoro, and the dominant eye's image for both.
 const FULL_RATE: &str = "yoro-full-rate";
 const SAME_IMAGE: &str = "same-image";
@@ -104,7 +102,6 @@ struct Ways {
     whole: Way,
     conventional: Way,
     synthesized: Way,
-    half_rate: Way,
     mono: Way,
     frame: StereoFrame,
     /// Vectors and depth of both eyes.
@@ -123,16 +120,15 @@ struct ReadBack {
 impl Ways {
     fn new(gl: &Rc<Context>, job: &Job, level: FoveationLevel) -> Result<Ways, GlError> {
         let create =
-            |method: Method, level, between| Way::new(gl, job, (method, method.name()), level, between);
+            |method: Method, level, vectors| Way::new(gl, job, (method, method.name()), level, vectors);
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         let target = || RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F));
         Ok(Ways {
             gl: gl.clone(),
-            whole: create(Method::Conventional, FoveationLevel::Off, FramesBetween::Runtime)?,
-            conventional: create(Method::Conventional, level, FramesBetween::Runtime)?,
-            synthesized: create(Method::Synthesized, level, FramesBetween::Runtime)?,
-            half_rate: create(Method::Synthesized, level, FramesBetween::Method)?,
-            mono: create(Method::Mono, level, FramesBetween::Nobody)?,
+            whole: create(Method::Conventional, FoveationLevel::Off, true)?,
+            conventional: create(Method::Conventional, level, true)?,
+            synthesized: create(Method::Synthesized, level, true)?,
+            mono: create(Method::Mono, level, false)?,
             frame: StereoFrame::new(gl, job.eyes.size)?,
             vectors: [target()?, target()?],
             depth: DepthReader::new(gl)?,
@@ -182,8 +178,6 @@ impl Ways {
         self.frame.resize(now.size)?;
         self.resize_vectors(vector_size)?;
         prepared.set_time(then_seconds)?;
-        self.half_rate.render(prepared, &then, &self.frame.targets())?;
-
         prepared.set_time(now_seconds)?;
         let to = self.targets(&then);
         let mut shown = Vec::new();
@@ -213,12 +207,6 @@ impl Ways {
                 true_color = read.rgba;
             }
         }
-        self.half_rate.render(prepared, &now, &self.frame.targets())?;
-        for (way, ahead) in [(DEPTH, 0.0), (ANY_VIEW, 0.5)] {
-            let can = self.half_rate.show_again(&newest, &self.frame.targets(), ahead)?;
-            ensure!(can, "the head has turned too far");
-            shown.push((way, image(&self.frame.rgba(eye))));
-        }
 
         prepared.set_time(newest_seconds)?;
         for (way, method) in [(FULL_RATE, &mut self.synthesized), (SAME_IMAGE, &mut self.mono)] {
@@ -240,30 +228,25 @@ impl Ways {
     fn times(
         &mut self,
         prepared: &mut PreparedScene,
-        [(then, _), (now, now_seconds), (newest, _)]: [At; 3],
-    ) -> anyhow::Result<[(&'static str, Duration); 5]> {
+        [(then, _), (now, now_seconds), _]: [At; 3],
+    ) -> anyhow::Result<[(&'static str, Duration); 4]> {
         self.resize_vectors(now.size.map(|n| n.div_ceil(DIVISOR)))?;
         // Both shadow maps of a moving scene are redrawn by whoever moves it, once for each render.
         prepared.set_time(now_seconds)?;
         let gl = self.gl.clone();
         let (plain, vectors) = (self.frame.targets(), self.targets(&then));
-        let mut all =
-            [CONVENTIONAL, TWO_EYES, FULL_RATE, ONE_EYE, ANY_VIEW].map(|name| (name, Duration::ZERO));
+        let mut all = [CONVENTIONAL, TWO_EYES, FULL_RATE, ONE_EYE].map(|name| (name, Duration::ZERO));
         for is_timed in [false, true] {
             for (name, time) in &mut all {
                 let (method, to, frames) = match *name {
                     CONVENTIONAL => (&mut self.whole, &plain, 1),
                     TWO_EYES => (&mut self.conventional, &vectors, 2),
                     FULL_RATE => (&mut self.synthesized, &plain, 1),
-                    ONE_EYE => (&mut self.synthesized, &vectors, 2),
-                    _ => (&mut self.half_rate, &plain, 2),
+                    _ => (&mut self.synthesized, &vectors, 2),
                 };
                 gl.finish();
                 let begin = Instant::now();
                 method.render(prepared, &now, to)?;
-                if *name == ANY_VIEW {
-                    method.show_again(&newest, to, 0.5)?;
-                }
                 gl.finish();
                 if is_timed {
                     *time = begin.elapsed() / frames;

@@ -129,7 +129,6 @@ impl<'a> Runner<'a> {
         let measured = match job.measure {
             Measure::Frames { .. } => self.frames(job, &mut prepared, done),
             Measure::Flicker => self.flicker(job, &mut prepared),
-            Measure::GuardBand => self.guard_band(job, &mut prepared),
             Measure::Foveation => self.foveation(job, &mut prepared, done),
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Reprojection(displaced) => self.reprojection(job, displaced, &mut prepared),
@@ -165,7 +164,6 @@ impl<'a> Runner<'a> {
             | Measure::WholeFrames => Views::spread(job, prepared)?,
             // Only the start of the path has to show something; a later frame may look past the scene.
             Measure::Flicker
-            | Measure::GuardBand
             | Measure::Reprojection(TargetPose::Late(..))
             | Measure::HalfRate(..)
             | Measure::Stream(_) => Views::along_path(job, prepared, views::STEP)?.first(),

@@ -1,13 +1,11 @@
 //! One render shown at another pose: after the head has moved, and for canted eyes.
 
 use std::rc::Rc;
-use std::time::{Duration, Instant};
 
-use anyhow::ensure;
 use glam::Quat;
 use image::RgbImage;
 
-use super::{Runner, milliseconds};
+use super::Runner;
 use crate::bench::job::{Job, TargetPose};
 use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
@@ -17,7 +15,6 @@ use yoro::opengl::{AnyView, Gather, Options, Outputs, Source};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
-use yoro_render::stereo::{self, FramesBetween, Method, StereoFrame, StereoMethod, StereoOptions};
 use yoro_render::{PreparedScene, ViewTargets};
 
 /// Names of the ways of showing a render at another pose.
@@ -32,9 +29,6 @@ const NEAREST: f32 = 0.5;
 /// The angle in degrees by which each canted eye is turned outwards.
 const CANT_DEGREES: f32 = 5.0;
 
-/// Names of what is timed: two renders and, with half the rate of renders, the rendered frames and those in between.
-const TIMED: [&str; 3] = ["conventional", "rendered", "shown-again"];
-
 /// The pictures of each way, by its name.
 type Shown = Vec<(&'static str, RgbImage)>;
 
@@ -48,7 +42,6 @@ impl Runner<'_> {
     ) -> anyhow::Result<()> {
         self.bar.set_message(job.conditions.to_string());
         let mut reprojector = Reprojector::new(self.gl)?;
-        let mut timer = Timer::new(self.gl, job)?;
         let (views, late) = match displaced {
             TargetPose::Late(motion, late) => {
                 // The frames are spread over the motion, so that neighbours are not alike.
@@ -79,12 +72,6 @@ impl Runner<'_> {
                 measurement.push(metric::PSNR, psnr(&image, &truth, Channels::Rgb)?.0);
                 measurement.push(metric::SSIM, ssim(&image, &truth, SsimWindow::Gaussian11, Channels::Rgb)?);
             }
-            if late == Some(1) {
-                let [then, now] = [0, 1].map(|n| views.pairs[i * SPREAD + n]);
-                for (name, time) in TIMED.iter().zip(timer.run(prepared, &then, &now)?) {
-                    measurement_of(&mut measurements, job, name).push(metric::FRAME_MS, milliseconds(time));
-                }
-            }
             self.bar.inc(1);
         }
         self.finish_round(job, 0, vec![Record::Scene(views.facts(job, prepared))], measurements)
@@ -114,58 +101,6 @@ fn canted(pair: &EyePair) -> EyePair {
         pose.orientation *= Quat::from_rotation_y(side * CANT_DEGREES.to_radians());
     }
     eyes
-}
-
-/// Times whole stereo frames.
-struct Timer {
-    gl: Rc<Context>,
-    /// Two renders, and one render that is shown in several frames.
-    methods: [Box<dyn StereoMethod>; 2],
-    frame: StereoFrame,
-}
-
-impl Timer {
-    fn new(gl: &Rc<Context>, job: &Job) -> Result<Timer, GlError> {
-        let options =
-            StereoOptions { frames_between: FramesBetween::Method, policy: None, ..StereoOptions::default() };
-        let create = |method, options| stereo::create(gl, method, &job.render, options);
-        let methods = [
-            create(Method::Conventional, &StereoOptions::default())?,
-            create(Method::Synthesized, &options)?,
-        ];
-        Ok(Timer { gl: gl.clone(), methods, frame: StereoFrame::new(gl, job.eyes.size)? })
-    }
-
-    /// Returns the times up to glFinish in the order of [`TIMED`], after an untimed frame of each.
-    fn run(
-        &mut self,
-        prepared: &mut PreparedScene,
-        then: &EyePair,
-        now: &EyePair,
-    ) -> anyhow::Result<[Duration; 3]> {
-        let mut times = [Duration::ZERO; 3];
-        for is_timed in [false, true] {
-            for (at, time) in times.iter_mut().enumerate() {
-                self.gl.finish();
-                let begin = Instant::now();
-                let method = &mut self.methods[at.min(1)];
-                match at {
-                    2 => {
-                        ensure!(
-                            method.show_again(now, &self.frame.targets(), 0.0)?,
-                            "the head has turned too far"
-                        )
-                    }
-                    _ => method.render(&mut prepared.renderer, &prepared.scene, then, &mut self.frame)?,
-                }
-                self.gl.finish();
-                if is_timed {
-                    *time = begin.elapsed();
-                }
-            }
-        }
-        Ok(times)
-    }
 }
 
 /// Renders views and shows them at other poses.

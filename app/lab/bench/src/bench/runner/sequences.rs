@@ -2,16 +2,14 @@
 
 use image::RgbImage;
 
-use super::{Runner, eye_image, milliseconds};
-use crate::bench::contender::Band;
+use super::{Runner, eye_image};
 use crate::bench::holes::HoleFinder;
 use crate::bench::job::Job;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::{self, Views};
-use yoro::eyes::{Eye, EyePair};
 use yoro_estimate::{Device, Meter};
 use yoro_files::interrupt;
-use yoro_metrics::{Channels, FlickerMeter, psnr};
+use yoro_metrics::FlickerMeter;
 use yoro_render::PreparedScene;
 
 impl Runner<'_> {
@@ -46,41 +44,6 @@ impl Runner<'_> {
         self.finish_round(job, 0, field.first, measurements)
     }
 
-    /// Renders every contender's frames in order, each once, as a viewer does. The recorded use of the guard band is
-    /// that of two frames earlier.
-    pub(super) fn guard_band(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
-        let views = Views::along_path(job, prepared, views::HEADSET_STEP)?;
-        let mut field = self.field(job, prepared, &views, true)?;
-        let mut measurements = field.measurements(job, 0);
-        self.bar.set_message(job.conditions.to_string());
-        let count = field.contenders.len();
-        for (i, pair) in views.pairs.iter().enumerate() {
-            prepared.set_time(i as f64 / views::HEADSET_RATE)?;
-            let mut images = vec![RgbImage::default(); count];
-            for turn in 0..count {
-                interrupt::check()?;
-                let at = (turn + i) % count;
-                let ready = &mut field.contenders[at].1;
-                let time = ready.render(prepared, pair, &mut field.frame)?;
-                measurements[at].push(metric::FRAME_MS, milliseconds(time.wall));
-                if let Some(used) = ready.guard_band() {
-                    measurements[at].push(metric::GUARD_COLUMNS, f64::from(used.columns));
-                    measurements[at].push(metric::UNDRAWN, f64::from(used.undrawn));
-                }
-                images[at] = eye_image(&field.frame, pair.dominant.other());
-                self.bar.inc(1);
-            }
-            let truth = border(&images[0], pair)?;
-            for at in 1..count {
-                measurements[at].push(metric::PSNR, psnr(&images[at], &images[0], Channels::Rgb)?.0);
-                let border = psnr(&border(&images[at], pair)?, &truth, Channels::Rgb)?;
-                measurements[at].push(metric::BORDER_PSNR, border.0);
-            }
-        }
-        prepared.set_time(0.0)?;
-        self.finish_round(job, 0, field.first, measurements)
-    }
-
     pub(super) fn executed(
         &mut self,
         job: &Job,
@@ -100,15 +63,4 @@ impl Runner<'_> {
         }
         self.finish_round(job, 0, vec![Record::Scene(views.facts(job, prepared))], vec![measurement])
     }
-}
-
-/// Returns the columns at the outer border of the eye that is not dominant in which surfaces at half a metre need a
-/// guard band, the widest one that is measured.
-fn border(image: &RgbImage, pair: &EyePair) -> anyhow::Result<RgbImage> {
-    let width = pair.synthesis_views(Band::HalfMetre.guard_band())?.guard_columns.min(image.width());
-    let left = match pair.dominant.other() {
-        Eye::Left => 0,
-        Eye::Right => image.width() - width,
-    };
-    Ok(image::imageops::crop_imm(image, left, 0, width, image.height()).to_image())
 }

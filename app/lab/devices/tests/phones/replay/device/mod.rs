@@ -343,7 +343,7 @@ impl SimulatedDevice {
             self.write_log(pid, "I", yoro_settings::telemetry::LOG_TAG, &text);
         }
         if over {
-            let text = format!("v=1,summary=1,t={time_s:.1}s,frames={:.0}", time_s * line.fps.unwrap_or(0.0));
+            let text = format!("v=2,summary=1,t={time_s:.1}s,frames={:.0}", time_s * line.fps.unwrap_or(0.0));
             self.write_log(pid, "I", yoro_settings::telemetry::LOG_TAG, &text);
         }
     }
@@ -405,8 +405,6 @@ impl SimulatedDevice {
             status: Some(status),
             run: None,
             performance: None,
-            guard_columns: None,
-            undrawn: None,
             auto: None,
         }
     }

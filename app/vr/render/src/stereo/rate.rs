@@ -1,6 +1,6 @@
 //! The rate of renders with `frame-rate=auto`, where a runtime makes the frames between.
 
-use crate::adaptive::Load;
+use super::session::FrameLoad;
 
 /// Seconds over which frames are counted.
 const WINDOW_NS: i64 = 2_000_000_000;
@@ -11,7 +11,7 @@ const ROOM: f32 = 0.7;
 
 /// Leaves every second frame to the runtime while the full rate is missed.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct RateChooser {
+pub(super) struct RateChooser {
     is_half: bool,
     begin_ns: Option<i64>,
     frames: u32,
@@ -22,21 +22,21 @@ pub(crate) struct RateChooser {
 
 impl RateChooser {
     /// True if the runtime is to make every second frame.
-    pub fn is_half(&self) -> bool {
+    pub(super) fn is_half(&self) -> bool {
         self.is_half
     }
 
-    /// Takes a frame into account. `refresh_hz` is that of the display. Returns true if the rate has changed.
-    pub fn frame(&mut self, load: &Load, refresh_hz: f32) -> bool {
-        let begin = *self.begin_ns.get_or_insert(load.now_ns);
+    /// Takes a frame into account. Returns true if the rate has changed.
+    pub(super) fn frame(&mut self, load: &FrameLoad) -> bool {
+        let begin = *self.begin_ns.get_or_insert(load.ended_ns);
         self.frames += 1;
         self.late += u32::from(load.late_refreshes > 0);
-        self.slowest_ms = load.gpu_ms.map(|ms| ms.max(self.slowest_ms.unwrap_or(0.0))).or(self.slowest_ms);
-        if load.now_ns - begin < WINDOW_NS {
+        self.slowest_ms = load.gpu.map(|gpu| gpu.ms.max(self.slowest_ms.unwrap_or(0.0))).or(self.slowest_ms);
+        if load.ended_ns - begin < WINDOW_NS {
             return false;
         }
         let misses = self.late as f32 >= LATE * self.frames as f32;
-        let has_room = self.slowest_ms.is_some_and(|ms| ms * refresh_hz < ROOM * 1e3);
+        let has_room = self.slowest_ms.is_some_and(|ms| ms * load.display_hz < ROOM * 1e3);
         let is_half = if self.is_half { !has_room } else { misses };
         let has_changed = is_half != self.is_half;
         *self = RateChooser { is_half, ..RateChooser::default() };
@@ -44,7 +44,7 @@ impl RateChooser {
     }
 
     /// Forgets the frames counted so far, which no longer describe the load.
-    pub fn interrupt(&mut self) {
+    pub(super) fn interrupt(&mut self) {
         *self = RateChooser { is_half: self.is_half, ..RateChooser::default() };
     }
 }
@@ -52,13 +52,20 @@ impl RateChooser {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use yoro::choice::Cost;
 
     /// Runs three seconds of frames, every `late`th of them late; returns true if the rate has changed.
     fn run(chooser: &mut RateChooser, from: i64, late: u32, gpu_ms: Option<f32>) -> bool {
         (0..216).any(|i| {
-            let now_ns = from + i64::from(i) * 13_888_889;
-            let late_refreshes = u32::from(late > 0 && i % late == 0);
-            chooser.frame(&Load { now_ns, refresh_hz: 72.0, late_refreshes, gpu_ms }, 72.0)
+            let load = FrameLoad {
+                ended_ns: from + i64::from(i) * 13_888_889,
+                refresh_hz: 72.0,
+                display_hz: 72.0,
+                late_refreshes: u32::from(late > 0 && i % late == 0),
+                gpu: gpu_ms.map(|ms| Cost { frames_ago: 0, ms }),
+                thermal_headroom: None,
+            };
+            chooser.frame(&load)
         })
     }
 
