@@ -108,8 +108,8 @@ pub trait Device {
     fn samples_layers(&self) -> bool;
     fn image(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Self::Image;
     /// Fills a layer, with rows from the bottom, and leaves it as a synthesis finds it.
-    fn upload_rgba8(&self, image: &Self::Image, layer: u32, rgba: &[u8], as_found: (Role, &Setup));
-    fn upload_depth(&self, image: &Self::Image, layer: u32, depth: &[f32], as_found: (Role, &Setup));
+    fn upload_rgba8(&self, image: &Self::Image, layer: u32, rgba: &[u8], role: Role, setup: &Setup);
+    fn upload_depth(&self, image: &Self::Image, layer: u32, depth: &[f32], role: Role, setup: &Setup);
     /// Reads a layer of a target, before or after a synthesis.
     fn read_rgba8(&self, image: &Self::Image, layer: u32, before: Option<&Setup>) -> Vec<u8>;
     fn read_depth(&self, image: &Self::Image, layer: u32, before: Option<&Setup>) -> Vec<f32>;
@@ -131,7 +131,11 @@ pub fn check<D: Device, W: WarpKind + Debug>(device: &D, cases: &[Case<W>]) {
     let mut shared = None;
     for Case { setup, picture, rgba, depth } in cases {
         let mut setup = *setup;
-        setup.source_layer *= u32::from(device.samples_layers());
+        if !device.samples_layers() {
+            setup.source_layer = 0;
+            // Depth is sampled to read it back.
+            setup.target_layer *= u32::from(setup.target_depth.is_none());
+        }
         let formats = [Some(setup.depth), setup.target_depth];
         if let Some(missing) = formats.into_iter().flatten().find(|format| !device.has(*format)) {
             println!("SKIPPED: {} has no {missing:?}", device.name());
@@ -192,13 +196,13 @@ pub fn synthesize<D: Device, W: WarpKind>(
             rgba = pasted(rgba, source_image, source_origin, &picture.rgba, width);
             depth = pasted(depth, source_image, source_origin, &picture.depth, width);
         }
-        device.upload_rgba8(&images.color, layer, &rgba, (Role::Color, setup));
-        device.upload_depth(&images.depth, layer, &depth, (Role::Depth, setup));
+        device.upload_rgba8(&images.color, layer, &rgba, Role::Color, setup);
+        device.upload_depth(&images.depth, layer, &depth, Role::Depth, setup);
     }
     for layer in 0..=setup.target_layer {
-        device.upload_rgba8(&images.target, layer, &target_rgba, (Role::Target, setup));
+        device.upload_rgba8(&images.target, layer, &target_rgba, Role::Target, setup);
         let of_depth = images.target_depth.iter();
-        of_depth.for_each(|i| device.upload_depth(i, layer, &target_depth, (Role::TargetDepth, setup)));
+        of_depth.for_each(|i| device.upload_depth(i, layer, &target_depth, Role::TargetDepth, setup));
     }
     // Read back, after conversions between formats.
     let layer = setup.target_layer;

@@ -10,7 +10,7 @@ use yoro::eyes::{Eye, VectorSpace, VectorsOf};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
-fn former_eyes() -> YoroEyes {
+fn previous_eyes() -> YoroEyes {
     let mut eyes = good_eyes();
     for (pose, side) in eyes.poses.iter_mut().zip([-0.5, 0.5]) {
         pose.position = [0.066 * side, 1.58, 0.04];
@@ -32,11 +32,11 @@ fn core(eyes: &YoroEyes) -> EyePair {
 /// Returns the warps to the other eye and to the rendered one.
 fn warps(
     eyes: &YoroEyes,
-    former: &YoroEyes,
+    previous: &YoroEyes,
     vectors: YoroVectors,
 ) -> Result<[YoroMotionWarp; 2], YoroResult> {
     let mut motion: YoroMotion = zeroed(|m: &mut YoroMotion| &mut m.struct_size);
-    (motion.eyes, motion.former, motion.vectors) = (eyes, former, vectors);
+    (motion.eyes, motion.previous, motion.vectors) = (eyes, previous, vectors);
     let mut warps = [YoroMotionWarp::default(); 2];
     let [other, own] = &mut warps;
     // SAFETY: complete structures, and what is refused.
@@ -46,22 +46,22 @@ fn warps(
     }
 }
 
-fn the_cores(eyes: &YoroEyes, former: &YoroEyes, space: VectorSpace) -> [MotionWarp; 2] {
+fn the_cores(eyes: &YoroEyes, previous: &YoroEyes, space: VectorSpace) -> [MotionWarp; 2] {
     let [now, then] =
-        [eyes, former].map(|eyes| core(eyes).synthesis_views(GuardBand::Distance(1.0)).unwrap());
+        [eyes, previous].map(|eyes| core(eyes).synthesis_views(GuardBand::Distance(1.0)).unwrap());
     [now.motion(&then, space).unwrap(), now.own_motion(&then, space).unwrap()]
 }
 
 #[test]
 fn the_law_is_the_cores() {
-    let (eyes, former) = (good_eyes(), former_eyes());
+    let (eyes, previous) = (good_eyes(), previous_eyes());
     for (vectors, of, clip, ndc) in [
         (YORO_VECTORS_EYE, VectorsOf::Eye, YORO_CLIP_OPENGL, Ndc::MinusOneToOne),
         (YORO_VECTORS_EYE, VectorsOf::Eye, YORO_CLIP_VULKAN, Ndc::ZeroToOne),
     ] {
-        let [eyes, former] = [YoroEyes { clip, ..eyes }, YoroEyes { clip, ..former }];
-        let got = warps(&eyes, &former, vectors).unwrap();
-        for (got, want) in got.iter().zip(the_cores(&eyes, &former, VectorSpace { ndc, of })) {
+        let [eyes, previous] = [YoroEyes { clip, ..eyes }, YoroEyes { clip, ..previous }];
+        let got = warps(&eyes, &previous, vectors).unwrap();
+        for (got, want) in got.iter().zip(the_cores(&eyes, &previous, VectorSpace { ndc, of })) {
             assert_eq!([got.per_z, got.per_depth, got.constant], {
                 let law = want.law;
                 [law.per_z, law.per_depth, law.constant]
@@ -73,9 +73,9 @@ fn the_law_is_the_cores() {
         }
         assert!(got[0].per_z != 0.0 && got[0].per_depth != 0.0 && got[1].per_z == 0.0);
     }
-    assert_eq!(warps(&eyes, &former, 2).err(), Some(YORO_ERROR_VALUE));
+    assert_eq!(warps(&eyes, &previous, 2).err(), Some(YORO_ERROR_VALUE));
     // Another guard band: the rendered view's coordinates have changed.
-    let wider = YoroEyes { guard_band: 0.3, ..former };
+    let wider = YoroEyes { guard_band: 0.3, ..previous };
     assert_eq!(warps(&eyes, &wider, YORO_VECTORS_SOURCE).err(), Some(YORO_ERROR_VALUE));
     assert!(warps(&eyes, &wider, YORO_VECTORS_EYE).is_ok());
     let mut motion: YoroMotion = zeroed(|m: &mut YoroMotion| &mut m.struct_size);
@@ -93,7 +93,7 @@ fn a_context_of_motion_takes_motion_warps_alone() {
     let kind = YORO_WARP_KIND_MOTION;
     let info = YoroGlInfo { outputs: YORO_OUTPUT_DEPTH, warp_kind: kind, ..gl_info(&mut noted) };
     let eyes = good_eyes();
-    let [warp, _] = warps(&eyes, &former_eyes(), YORO_VECTORS_EYE).unwrap();
+    let [warp, _] = warps(&eyes, &previous_eyes(), YORO_VECTORS_EYE).unwrap();
     let source_size = [warp.warp.source_width, warp.warp.source_height];
     let target_size = [warp.warp.target_width, warp.warp.target_height];
     let images = images(headless.gl().raw(), glow::RGBA16F, source_size, target_size);

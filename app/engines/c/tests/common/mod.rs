@@ -60,6 +60,19 @@ pub fn matrices_of(views: &YoroViews, eyes: &YoroEyes) -> YoroMatrices {
     matrices
 }
 
+/// Returns the same eyes in a left-handed world, in centimetres, looking along +Z.
+pub fn left_handed(mut matrices: YoroMatrices) -> YoroMatrices {
+    for (view, projection) in matrices.view.iter_mut().zip(&mut matrices.projection) {
+        (0..4).for_each(|column| view[4 * column + 2] *= -1.0);
+        (8..12).for_each(|i| view[i] *= -1.0);
+        (8..12).for_each(|i| projection[i] *= -1.0);
+        (12..15).for_each(|i| view[i] *= 100.0);
+        projection[14] *= 100.0;
+    }
+    matrices.units_per_metre = 100.0;
+    matrices
+}
+
 pub fn views_of_matrices(matrices: &YoroMatrices) -> Result<YoroViews, YoroResult> {
     let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
     // SAFETY: both are whole structures of the sizes that they state.

@@ -1,17 +1,16 @@
-//! Synthesis on OpenGL: from two textures of one eye to a framebuffer with the other eye.
+//! Synthesis on OpenGL: reads the colour and depth textures of one eye, and draws the other eye into a framebuffer.
 //!
-//! [`Gather`] takes a [`Warp`](crate::eyes::Warp) between parallel eyes, [`AnyView`] a
-//! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. [`Motion`] makes the other eye's motion
-//! vectors. All are a [`Pipeline`], and need OpenGL
-//! ES 3.0, desktop OpenGL 4.5 (4.3 with GL_ARB_ES3_1_compatibility) or WebGL 2. `examples/engine.rs` uses one in a
-//! separate engine. [`GuessedDepth`] comes before [`Gather`] where only one sample's depth of an anti-aliased image can
-//! be had.
+//! [`Gather`] draws a parallel eye from a [`Warp`](crate::eyes::Warp), and [`AnyView`] draws a view in any pose near the
+//! source's from a [`PoseWarp`](crate::eyes::PoseWarp). [`Motion`] makes the other eye's motion vectors. Each is a
+//! [`Pipeline`], and runs on OpenGL ES 3.0, on WebGL 2, and on desktop OpenGL 4.5, or 4.3 with
+//! GL_ARB_ES3_1_compatibility. `examples/engine.rs` uses one in an engine of its own.
 //!
-//! A [`Composer`] makes an eye from the levels of a foveated view.
+//! [`GuessedDepth`] runs before [`Gather`] on drivers that resolve only one depth sample of an anti-aliased image. A
+//! [`Composer`] combines the layers of a foveated view into the eye that is shown.
 //!
-//! [`Context::set_profiling`] times the passes, named `gather tiles`, `gather spans` and `gather march`, or
-//! `any view tiles` and so on, and `compose`. [`Context::end_timed_frame`], once a frame, returns the times of an earlier one without
-//! waiting; [`Context::take_pass_times`] waits.
+//! [`Context::set_profiling`] times the passes, which are named `gather tiles`, `gather spans` and `gather march`, or
+//! `any view tiles` and so on, and `compose`. Call [`Context::end_timed_frame`] once a frame: it returns the times of an
+//! earlier frame without waiting. [`Context::take_pass_times`] waits for those of this one.
 
 mod composer;
 mod guessed_depth;

@@ -9,25 +9,28 @@ use super::{Bloom, GlState, Options, Outputs, Source, draw_target};
 use crate::eyes::{MotionWarp, PoseWarp, Warp};
 use crate::synthesis::backend::{PerKind, UniformBlock as _, WarpKind, map_sizes};
 
-/// Synthesis between parallel eyes: the march goes along the source's row.
+/// Synthesis between parallel eyes. The march follows the source's row.
 pub type Gather = Pipeline<Warp>;
 
-/// Synthesis of a view in any pose near the source's: the march goes along a segment of any direction. For parallel eyes
-/// on a level line, it gives the same picture as [`Gather`], within the rounding of positions, but is slower. It has no
+/// Synthesis of a view in any pose near the source's. The march follows a segment of any direction. For parallel eyes on
+/// a level line it draws the same picture as [`Gather`], within the rounding of positions, but more slowly. It has no
 /// source map, which can only hold columns.
 pub type AnyView = Pipeline<PoseWarp>;
 
-/// Synthesis of motion vectors between parallel eyes, for runtimes that make frames between those that are rendered. The
-/// source's colour is the vectors' texture, RGBA16F with three components in NDC ([`VectorSpace`]), with depth of the same
-/// size: that of the vectors that a runtime recommends, not that of the eye. Two components are not enough: a hand that
-/// comes near moves sideways in the other eye, by 8 pixels of 1024. The target receives vectors, and with
-/// [`Outputs::depth`] depth. Silhouettes are not blended, and a hole has its background's vector.
+/// Synthesis of motion vectors between parallel eyes, for runtimes that make frames between those that are rendered.
+///
+/// The source's colour is the texture of the vectors, in RGBA16F, with three components in NDC ([`VectorSpace`]). It has
+/// the size that a runtime recommends for vectors, which is not that of the eye, and its depth has the same size. Two
+/// components are not enough, since a hand that comes near moves sideways in the other eye, by 8 pixels of 1024. The
+/// target receives vectors, and with [`Outputs::depth`] also depth. Silhouettes are not blended, and a hole takes the
+/// vector of its background.
 ///
 /// [`VectorSpace`]: crate::eyes::VectorSpace
 pub type Motion = Pipeline<MotionWarp>;
 
-/// The passes for a kind of warp: [`Gather`], [`AnyView`] or [`Motion`]. All are fragment passes: tile bounds, tile spans, march. The
-/// two intermediate buffers have 16 bytes per tile of 16 x 8 pixels ([`buffer_bytes`](super::buffer_bytes)).
+/// The passes for a kind of warp: [`Gather`], [`AnyView`] or [`Motion`]. They are three fragment passes, which find the
+/// bounds of tiles, find the spans of tiles, and march. The two buffers between them have 16 bytes for each tile of 16 x 8
+/// pixels ([`buffer_bytes`](super::buffer_bytes)).
 ///
 /// The context must be current on the calling thread. The picture does not depend on the context's state: a call sets
 /// all the state that it relies on. Afterwards, the state is as in the table with [`GlState::Leave`], and as before the
@@ -41,6 +44,7 @@ pub type Motion = Pipeline<MotionWarp>;
 /// | draw and read framebuffer | the target's | changed |
 /// | viewport (the first; with `OES_viewport_array` all) | the target's rectangle | changed |
 /// | 2-D texture of units 0 to 3 | depth, colour, intermediate | changed |
+/// | 2-D texture of unit 4, for sources with bloom | bloom | changed, even with `Preserve` |
 /// | array texture of units 0 and 1, for sources that are layers | depth, colour | changed |
 /// | sampler object of units 0 to 3 | yoro's own | none |
 /// | active unit | 0 to 3 | changed |

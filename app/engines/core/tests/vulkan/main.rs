@@ -97,11 +97,11 @@ impl<'a> Device for OnVulkan<'a> {
         self.0.image(format, size, layers)
     }
 
-    fn upload_rgba8(&self, image: &Image<'a>, layer: u32, rgba: &[u8], (role, setup): (Role, &Setup)) {
+    fn upload_rgba8(&self, image: &Image<'a>, layer: u32, rgba: &[u8], role: Role, setup: &Setup) {
         image.upload_rgba8(layer, rgba, uses(role, setup)[0]);
     }
 
-    fn upload_depth(&self, image: &Image<'a>, layer: u32, depth: &[f32], (role, setup): (Role, &Setup)) {
+    fn upload_depth(&self, image: &Image<'a>, layer: u32, depth: &[f32], role: Role, setup: &Setup) {
         image.upload_depth(layer, depth, uses(role, setup)[0]);
     }
 

@@ -57,11 +57,11 @@ impl Device for &Gpu {
         self.texture(named(format), size, layers)
     }
 
-    fn upload_rgba8(&self, image: &Texture, layer: u32, rgba: &[u8], _: (Role, &Setup)) {
+    fn upload_rgba8(&self, image: &Texture, layer: u32, rgba: &[u8], _: Role, _: &Setup) {
         (**self).upload_rgba8(image, layer, rgba);
     }
 
-    fn upload_depth(&self, image: &Texture, layer: u32, depth: &[f32], _: (Role, &Setup)) {
+    fn upload_depth(&self, image: &Texture, layer: u32, depth: &[f32], _: Role, _: &Setup) {
         (**self).upload_depth(image, layer, depth);
     }
 
