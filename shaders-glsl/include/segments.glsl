@@ -1,6 +1,5 @@
 #include "include/span.glsl"
 #include "include/planes.glsl"
-#include "include/fill.glsl"
 
 // The search of a fragment over segments: from each marked pair of columns to the next (include/planes.glsl), or to the
 // next tile. Within a segment columns land in order, each less than MAX_STRETCH after the one before. Columns beyond the
@@ -16,16 +15,20 @@ struct Surface {
     bool hole;
 };
 
-// For measurements: the parts of the shader to compile. By default, all.
-#ifndef PARTS
-#define PARTS 63
-#endif
-const int LAW = 1;
-const int SEARCH = 2;
-const int SEGMENTS = 4;
-const int EVENTS = 8;
-const int FILL = 16;
-const int CROSSING = 32;
+// The background next to a hole: its forward column and depth.
+struct Edge {
+    float x;
+    float depth;
+};
+
+// The sample as many rows above the edge.
+vec4 tap_beside(Edge edge, float distance, out float nearer) {
+    vec2 place = vec2(column_at(edge.x), row_at(distance));
+    nearer = law.y * (depth_sample(place) - edge.depth);
+    return color_sample(place);
+}
+
+#include "include/fill.glsl"
 
 // State of the search: forward column x, the depths of columns x and x + 1, and where they land relative to the pixel.
 struct Search {
@@ -81,7 +84,6 @@ struct Beside {
 
 // Takes an event into account. Returns true if the pair of columns is the visible surface.
 bool meet(inout Beside beside, Search at) {
-    COUNT_TRIP(3)
     bool jump = at.b > 0.0;
     bool torn = at.b - at.a >= MAX_STRETCH;
     bool rim = beside.rim < 0.0 && (!jump || (torn && at.b < 1.0));
@@ -109,7 +111,7 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     beside.rim = -1.0;
     beside.rim_depth = 0.0;
     bool found = false;
-    if ((PARTS & EVENTS) != 0 && at.x >= 0.0 && at.x < end && is_event(at.a, at.b)) {
+    if (at.x >= 0.0 && at.x < end && is_event(at.a, at.b)) {
         found = meet(beside, at);
     }
     // The segment's first column, and where it lands.
@@ -120,11 +122,10 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     uint shift = uint(row & 2) << 3;
     bool crosses = false;
     while (x <= end && !found) {
-        COUNT_TRIP(1)
         at = search_at(min(segment_end(x, tile_row, below, shift), end), origin);
         crosses = a <= 0.0 && at.a > 0.0;
         found = crosses;
-        if ((PARTS & EVENTS) != 0 && !crosses && at.x < end && is_event(at.a, at.b)) {
+        if (!crosses && at.x < end && is_event(at.a, at.b)) {
             found = meet(beside, at);
         }
         // Continue after the pair.
@@ -134,8 +135,7 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     // Find the pair of the segment's columns that crosses the pixel.
     float last = at.x;
     float b = at.a;
-    while ((PARTS & CROSSING) != 0 && crosses && x < last) {
-        COUNT_TRIP(4)
+    while (crosses && x < last) {
         at = search_at(clamp(floor(x + (last - x) * a / (a - b)), x, last - 1.0), origin);
         crosses = at.a > 0.0 || at.b <= 0.0;
         bool behind = at.a > 0.0;
@@ -153,8 +153,8 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     float away = x - origin + law.y * surface.depth;
     surface.hole = !found && abs(away) >= 0.5;
     vec4 color = color_sample(vec2(column_at(surface.source), row_at(0.0)));
-    if ((PARTS & FILL) != 0 && surface.hole) {
-        color = fill_hole(color, away, x, surface.depth);
+    if (surface.hole) {
+        color = fill_hole(Edge(x, surface.depth), color, away);
     }
     // A silhouette lies anywhere between its last sample and the next one, so blend by the share of the pixel that it
     // covers on average.

@@ -30,9 +30,3 @@ bool folds(float a, float b) {
 bool has_rim(float a, float b) {
     return folds(a, b) || (jumps(a, b) && is_torn(a, b) && b < 1.0);
 }
-
-// Returns the spacing in pixels of the samples that fill a hole whose background is `away` pixels from it. The edge's
-// pixels must not smear into streaks.
-float fill_spread(float away) {
-    return 0.5 * clamp(abs(away), 1.0, 12.0);
-}

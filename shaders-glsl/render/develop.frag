@@ -1,5 +1,5 @@
 // A part of a rendered view as an eye shows it, with bloom; and its depth, to draw more over it.
-#include "include/develop.glsl"
+#include "include/bloom.glsl"
 #ifdef WRITE_DEPTH
 #include "include/depth_map.glsl"
 #endif
@@ -21,7 +21,7 @@ layout(location = 0) out vec4 out_color;
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy) + offset;
-    out_color = developed(COLOR_TEXEL(p), (vec2(p - view_origin) + 0.5) / vec2(view_size));
+    out_color = with_bloom(COLOR_TEXEL(p), (vec2(p - view_origin) + 0.5) / vec2(view_size));
 #ifdef WRITE_DEPTH
     float depth = depth_of(p);
     gl_FragDepth = depth;

@@ -1,4 +1,4 @@
-// Motion vectors and depth of a view, from its depth, its pose and the former one. Where a moving surface is seen, it has
+// Motion vectors and depth of a view, from its depth, its pose and the previous one. Where a moving surface is seen, it has
 // vectors of its own. Alpha is 1 there, and 0 where only the head has moved.
 #include "include/depth_map.glsl"
 
@@ -13,7 +13,7 @@ uniform bool reverse;  // true if the depth map has the other convention
 // Inverse distance in 1 / metres: that of depth 0, and its change per unit of depth.
 uniform vec2 inverse_distance;
 uniform vec4 to_place;   // from the view's pixels to the normalized device coordinates of vectors
-uniform mat4 to_former;  // (these, 1, inverse distance) -> former clip space
+uniform mat4 to_previous;  // (these, 1, inverse distance) -> previous clip space
 uniform float z_scale;   // from -1..1 to the convention of the vectors
 
 layout(location = 0) out vec4 vector;
@@ -28,8 +28,8 @@ void main() {
     depth = reverse ? 1.0 - depth : depth;
     float inverse = inverse_distance.x + inverse_distance.y * depth;
     vec3 place = vec3(pixel * to_place.xy + to_place.zw, 2.0 * depth - 1.0);
-    vec4 former = to_former * vec4(place.xy, 1.0, inverse);
-    vector = vec4(place - former.xyz / former.w, 0.0);
+    vec4 previous = to_previous * vec4(place.xy, 1.0, inverse);
+    vector = vec4(place - previous.xyz / previous.w, 0.0);
     // The nearest of a pixel's samples belongs to a moving surface that covers its middle, or that of a neighbour.
     float least = SAME_SURFACE * inverse;
     for (int i = moves ? 0 : 9; i < 9; ++i) {

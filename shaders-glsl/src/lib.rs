@@ -23,12 +23,11 @@ type File = (&'static str, &'static str);
 static SYNTHESIS: &[File] = embed![
     "include/any_view.glsl",
     "include/bits.glsl",
+    "include/bloom.glsl",
     "include/color.glsl",
     "include/depth_map.glsl",
-    "include/develop.glsl",
     "include/extensions.glsl",
     "include/fill.glsl",
-    "include/hdr.glsl",
     "include/interface.glsl",
     "include/laws.glsl",
     "include/levels.glsl",
@@ -38,7 +37,6 @@ static SYNTHESIS: &[File] = embed![
     "include/source.glsl",
     "include/span.glsl",
     "include/tiles.glsl",
-    "include/trips.glsl",
     "include/uniforms.glsl",
     "include/version.glsl",
     "include/warp.glsl",
@@ -60,6 +58,7 @@ static SYNTHESIS: &[File] = embed![
 #[cfg(any(test, feature = "app"))]
 static APP: &[File] = embed![
     "include/carried.glsl",
+    "include/hdr.glsl",
     "include/imbuffer.glsl",
     "include/ink.glsl",
     "include/material.glsl",

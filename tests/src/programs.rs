@@ -44,10 +44,6 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<BTreeSet<Pro
     Ok(recorder.programs().iter().map(|recipe| recipe.as_ref().clone()).collect())
 }
 
-/// Values of `PARTS` in `include/segments.glsl`. Each adds a part of the march: the law; the first steps; the search
-/// over segments; events; the fill; crossings.
-const MARCH_PARTS: [&str; 6] = ["1", "2", "6", "14", "30", "62"];
-
 fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let outputs = [(false, false), (false, true), (true, false), (true, true)]
         .map(|(depth, source_map)| Outputs { depth, source_map, ..Outputs::default() });
@@ -81,24 +77,17 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     }
     GuessedDepth::new(gl, &Options::default())?;
     // What OpenGL ES 3.0 and WebGL 2 compile.
-    Gather::with_macros(gl, &Options::default(), Outputs::default(), &["WITHOUT_ES_310"])?;
-    // The march split into parts, to determine the cost of each.
+    let written_out = [("WITHOUT_ES_310", String::new())];
+    for pass in ["synthesis/gather/tiles.frag", "synthesis/gather/spans.frag"] {
+        Program::new(gl, ShaderSource::Screen(pass), &written_out)?;
+    }
     let march =
         ShaderSource::Raster { vertex: "synthesis/march.vert", fragment: "synthesis/gather/march.frag" };
-    let define = |name| (name, String::new());
-    for pairs in [None, Some("DEPTH_PAIRS")] {
-        let part = |more: Option<&'static str>, parts: &str| {
-            let defines: Vec<_> = pairs.into_iter().chain(more).map(define).collect();
-            Program::new(gl, march, &[defines, vec![("PARTS", parts.to_owned())]].concat())
-        };
-        MARCH_PARTS.iter().try_for_each(|parts| part(None, parts).map(drop))?;
-        part(Some("WRITE_DEPTH"), MARCH_PARTS[0])?;
-    }
-    Program::new(gl, march, &[define("BLOOM"), ("PARTS", MARCH_PARTS[0].to_owned())])?;
-    // As above, of samples in a tile.
-    let options = Options { depth_pairs: true, ..Options::default() };
-    for (depth, macros) in [(false, &["BLOOM"][..]), (true, &["BLOOM"]), (false, &[]), (true, &[])] {
-        Gather::with_macros(gl, &options, Outputs { depth, ..Outputs::default() }, macros)?;
+    Program::new(gl, march, &written_out)?;
+    // Of samples in a tile.
+    for (depth, bloom) in [(false, true), (true, true), (false, false), (true, false)] {
+        let options = Options { depth_pairs: true, bloom, ..Options::default() };
+        Gather::new(gl, &options, Outputs { depth, ..Outputs::default() })?;
     }
     Ok(())
 }

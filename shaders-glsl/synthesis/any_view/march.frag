@@ -4,8 +4,9 @@
 //
 // A surface at inverse distance s from the source, seen at the target pixel p, lies at the source pixel
 // `q + s * (e.xy - e.z * q)`, where q is the pixel of p's ray at infinity and e the epipole in homogeneous pixels. It
-// is affine in s, and so in the stored depth. The rules for surfaces, silhouettes and holes are those of gather
-// (include/segments.glsl, include/fill.glsl), with samples along the segment in place of a row's columns.
+// is affine in s, and so in the stored depth. The rules for surfaces and silhouettes are those of gather
+// (include/segments.glsl), with samples along the segment in place of a row's columns; include/fill.glsl fills the holes
+// of both.
 
 #include "include/any_view.glsl"
 
@@ -94,23 +95,21 @@ bool lands(Segment line, float index, float beside, float steps) {
     return min(ends.x, ends.y) <= 1.0 && max(ends.x, ends.y) + steps >= -1.0;
 }
 
-// Returns the colour of a sample. If a disocclusion lies beside it, returns the colour of the background there,
-// averaged over five samples side by side as in `fill_hole`. `away` is the sample's distance from the target in pixels.
-vec4 fill_beside(Segment line, Sample edge, float away) {
-    float last = last_indices(line).y;
-    float spread = fill_spread(away);
-    vec4 sum = 2.0 * color_of(line, edge);
-    float weights = 2.0;
-    // A loop that no compiler unrolls.
-    for (int i = abs(away) >= 0.5 ? -2 : 3; i <= 2; ++i) {
-        float beside = clamp(floor(edge.beside + 0.5) + roundEven(float(i) * spread), 0.0, last);
-        Sample tap = Sample(edge.index, beside, depth_of(line, edge.index, beside));
-        float weight = i != 0 && line.law * (tap.depth - edge.depth) <= 1.0 ? 1.0 : 0.0;
-        sum += weight * color_of(line, tap);
-        weights += weight;
-    }
-    return sum / weights;
+// The background next to a hole.
+struct Edge {
+    Segment line;
+    Sample at;
+};
+
+// The sample as many pixels to the side of the segment.
+vec4 tap_beside(Edge edge, float distance, out float nearer) {
+    float beside = clamp(floor(edge.at.beside + 0.5) + distance, 0.0, last_indices(edge.line).y);
+    Sample tap = Sample(edge.at.index, beside, depth_of(edge.line, edge.at.index, beside));
+    nearer = edge.line.law * (tap.depth - edge.at.depth);
+    return color_of(edge.line, tap);
 }
+
+#include "include/fill.glsl"
 
 // Returns the depth that the target stores for a surface with this depth in the source. `scale` is the third component
 // of the ray in the source.
@@ -198,7 +197,11 @@ void main() {
         color = mix(color_of(line, before), color_of(line, here), t);
     } else {
         depth = here.depth;
-        color = fill_beside(line, here, landing(line, here.index, depth));
+        color = color_of(line, here);
+        float away = landing(line, here.index, depth);
+        if (abs(away) >= 0.5) {
+            color = fill_hole(Edge(line, here), color, away);
+        }
     }
     if (rim >= 0.0) {
         Sample silhouette = sample_at(line, rim);

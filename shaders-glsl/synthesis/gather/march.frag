@@ -9,7 +9,7 @@
 
 #include "include/segments.glsl"
 #ifdef BLOOM
-#include "include/develop.glsl"
+#include "include/bloom.glsl"
 #endif
 
 layout(location = 0) out vec4 color;
@@ -39,7 +39,7 @@ vec4 sample_planar(vec3 affine, out Surface surface) {
 #endif
     vec2 at = vec2(place, row_at(0.0));
 #ifdef BLOOM
-    return developed(color_sample(at), at);
+    return with_bloom(color_sample(at), at);
 #else
     return color_sample(at);
 #endif
@@ -53,7 +53,6 @@ vec4 searched(uint span, out Surface surface) {
     float limit = min(at.x + FIRST_STEPS, end);
     // Continue to the first pair that crosses the pixel, or has a silhouette within a pixel of it.
     for (; at.x < limit && at.b <= 0.0 && max(at.b, -1.0) >= at.a; at.x += 1.0) {
-        COUNT_TRIP(0)
         float next = depth_sample(vec2(column_at(at.x + 2.0), row_at(0.0)));
         at.depths = vec2(at.depths.y, next);
         at.a = at.b;
@@ -65,12 +64,11 @@ vec4 searched(uint span, out Surface surface) {
     vec4 seen = color_sample(vec2(column_at(surface.source), row_at(0.0)));
     float middle = 0.5 * float(source_size.x - 1);
     bool done = at.a <= 0.0 && at.b > 0.0 && stretch < MAX_STRETCH && abs(surface.source - middle) <= middle;
-    if ((PARTS & SEGMENTS) != 0 && !done) {
-        COUNT_TRIP(6)
+    if (!done) {
         seen = march(at, end, origin, source_row(), surface);
     }
 #ifdef BLOOM
-    seen = developed(seen, vec2(column_at(surface.source), row_at(0.0)));
+    seen = with_bloom(seen, vec2(column_at(surface.source), row_at(0.0)));
 #endif
     return seen;
 }
@@ -78,13 +76,10 @@ vec4 searched(uint span, out Surface surface) {
 void main() {
     uvec4 span = pixel_span();
     Surface surface;
-    if ((PARTS & LAW) != 0 && span.y != 0u) {
-        COUNT_TRIP(7)
+    if (span.y != 0u) {
         color = sample_planar(uintBitsToFloat(span.xyz), surface);
-    } else if ((PARTS & SEARCH) != 0) {
-        color = searched(span.x, surface);
     } else {
-        discard;
+        color = searched(span.x, surface);
     }
 #ifdef MOTION
     // Silhouettes are not blended: a mean of two motions is nobody's. A hole has the vector of the background that fills it.
@@ -92,10 +87,6 @@ void main() {
     vec2 scale = mix(vec2(1.0), vec2(source_size) / vec2(target_size), motion.w);
     color = vec4(scale * vector.xy, vector.zw);
     color.x += motion.x * vector.z + motion.y * surface.depth + motion.z;
-#endif
-#ifdef COUNT_TRIPS
-    int ways = trips[0] | min(trips[2], 1) << 3 | trips[6] << 4 | trips[7] << 5;
-    color = vec4(ways, trips[1], trips[3], trips[4]) / 255.0;
 #endif
 #ifdef WRITE_DEPTH
     gl_FragDepth = surface.depth;

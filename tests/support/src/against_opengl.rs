@@ -13,7 +13,6 @@ use yoro::eyes::{
     PoseWarp, VectorsOf, View, Warp,
 };
 use yoro::opengl::{self, Context, Destination, Options, Outputs};
-use yoro::synthesis::SourceMapEntry;
 use yoro::synthesis::backend::WarpKind;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{self as gl, Filter, RenderTarget, Texture};
@@ -70,33 +69,6 @@ pub fn ranges() -> [DepthRange; 4] {
         DepthRange { far: f32::INFINITY, convention: DepthConvention::Reversed, near: 0.1 },
         DepthRange::from_distances(100.0, 0.3),
     ]
-}
-
-/// Returns a rectangle of an image, at a place counted from the top. All rows run from the bottom.
-pub fn cut<T: Copy>(all: &[T], image: [u32; 2], origin: [u32; 2], size: [u32; 2], channels: usize) -> Vec<T> {
-    let [w, h] = image.map(|n| n as usize);
-    let bottom = h - (origin[1] + size[1]) as usize;
-    let row =
-        |y: usize| &all[((bottom + y) * w + origin[0] as usize) * channels..][..size[0] as usize * channels];
-    (0..size[1] as usize).flat_map(row).copied().collect()
-}
-
-/// Returns `all` with a rectangle of it replaced; places are counted as in [`cut`].
-pub fn pasted<T: Copy>(
-    mut all: Vec<T>,
-    image: [u32; 2],
-    origin: [u32; 2],
-    part: &[T],
-    width: usize,
-) -> Vec<T> {
-    let [w, h] = image.map(|n| n as usize);
-    let channels = all.len() / (w * h);
-    let rows = part.chunks_exact(width * channels);
-    let bottom = h - origin[1] as usize - rows.len();
-    for (y, row) in rows.enumerate() {
-        all[((bottom + y) * w + origin[0] as usize) * channels..][..row.len()].copy_from_slice(row);
-    }
-    all
 }
 
 /// The pipelines on OpenGL ES.
@@ -174,13 +146,6 @@ impl Gl {
     }
 }
 
-/// Checks that stored depths are nearly equal, as [`assert_equal`] does for colours.
-pub fn assert_depth_equal(got: &[f32], want: &[f32], what: &str) {
-    assert_eq!(got.len(), want.len());
-    let different = got.iter().zip(want).filter(|(a, b)| (**a - **b).abs() > 4e-5).count();
-    assert!(different * 4000 <= got.len(), "{what}: depth of {different} of {} pixels differs", got.len());
-}
-
 /// Checks that all channels are nearly equal, except for a few pixels whose positions lie within rounding of a
 /// decision.
 pub fn assert_equal(got: &[u8], want: &[u8], channels: usize, what: &str) {
@@ -253,21 +218,6 @@ pub fn random_cases() -> Vec<RandomCase> {
         target_layer: 0,
     });
     small.chain(wide).collect()
-}
-
-/// Returns the expected depth of a target, from the columns that OpenGL has written.
-pub fn expected_depth(picture: &Picture, source_map: &[u32]) -> Vec<f32> {
-    let warp = &picture.warp;
-    let [width, height] = warp.source_size.map(|n| n as i32);
-    let entries = source_map.iter().enumerate().map(|(i, entry)| {
-        let (x, y) = (i as u32 % warp.target_size[0], i as u32 / warp.target_size[0]);
-        let column = SourceMapEntry::decode(*entry, x, warp).column;
-        let row = (y as i32 - warp.row_offset).clamp(0, height - 1);
-        let at = |column: f32| picture.depth[(row * width + (column as i32).clamp(0, width - 1)) as usize];
-        let t = column.fract();
-        at(column.floor()) * (1.0 - t) + at(column.floor() + 1.0) * t
-    });
-    entries.collect()
 }
 
 /// Returns colour and depth as textures, and a target of the colour's format.

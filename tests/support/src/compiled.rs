@@ -1,12 +1,11 @@
 //! Files that are compiled from the shaders and committed, so that building a library requires no compiler. The file
 //! `SOURCES` beside them lists the compiler and the hash of each shader's text.
 
-use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{self, Command};
+use std::process::Command;
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Context as _, ensure};
 
 const GLSLANG: &str = "glslangValidator";
 
@@ -114,21 +113,30 @@ pub fn glslang(arguments: &[&str]) -> Option<String> {
 /// # Errors
 /// Fails if glslang cannot be run, or does not compile the shader.
 pub fn spirv(source: &Source, arguments: &[&str]) -> anyhow::Result<Vec<u8>> {
-    let work = env::temp_dir().join(format!("yoro-glslang-{}-{}", process::id(), source.name));
-    fs::create_dir_all(&work).with_context(|| format!("{} cannot be made", work.display()))?;
-    let text = work.join(if source.vertex { "shader.vert" } else { "shader.frag" });
-    let compiled = work.join("shader.spv");
-    let run = || -> anyhow::Result<Vec<u8>> {
-        fs::write(&text, &source.text)?;
-        let output = Command::new(GLSLANG).args(arguments).arg("-o").arg(&compiled).arg(&text).output()?;
-        if !output.status.success() {
-            bail!("{}: {}", source.name, String::from_utf8_lossy(&output.stdout));
-        }
-        Ok(fs::read(&compiled)?)
-    };
-    let result = run();
-    fs::remove_dir_all(&work).with_context(|| format!("{} cannot be removed", work.display()))?;
-    result
+    let work = tempfile::tempdir()?;
+    let compiled = work.path().join("shader.spv");
+    let stage = if source.vertex { "vert" } else { "frag" };
+    run(source.name, &source.text, stage, &[arguments, &["-o", &compiled.to_string_lossy()]].concat())?;
+    Ok(fs::read(&compiled)?)
+}
+
+/// Returns a shader's text with its macros replaced and its conditions decided, without comments.
+///
+/// # Errors
+/// Fails if glslang cannot be run.
+pub fn preprocessed(name: &str, text: &str) -> anyhow::Result<String> {
+    run(name, text, "frag", &["-E"])
+}
+
+/// Runs glslang on a text, and returns what it prints.
+fn run(name: &str, text: &str, stage: &str, arguments: &[&str]) -> anyhow::Result<String> {
+    let work = tempfile::tempdir()?;
+    let file = work.path().join(format!("shader.{stage}"));
+    fs::write(&file, text)?;
+    let output = Command::new(GLSLANG).args(arguments).arg(&file).output()?;
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    ensure!(output.status.success(), "{name}: {printed}");
+    Ok(printed)
 }
 
 #[cfg(test)]

@@ -356,6 +356,11 @@ pub fn is_depth(format: vk::Format) -> bool {
     )
 }
 
+/// True if the images here know how to copy this format.
+pub fn is_copied(format: vk::Format) -> bool {
+    format != vk::Format::X8_D24_UNORM_PACK32
+}
+
 fn is_rgba8(format: vk::Format) -> bool {
     matches!(format, vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB)
 }

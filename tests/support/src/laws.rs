@@ -11,7 +11,7 @@ use crate::in_memory::{InMemory, Synthesize};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityMap, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
 use yoro::synthesis::SOURCE_MAP_HOLE;
 use yoro_context::{Backend, Headless};
-use yoro_gl::Context;
+use yoro_gl::{Capabilities, Context};
 
 /// A function that makes a pipeline.
 type Make = Box<dyn Fn(&Rc<Context>) -> Synthesize>;
@@ -72,6 +72,17 @@ pub fn on_every_backend(body: impl Fn(&Rc<Context>)) {
     }
 }
 
+/// Runs a test body for each pipeline on EGL and on OSMesa.
+fn for_each(subjects: &[Subject], body: impl Fn(&Rc<Context>, &Subject)) {
+    on_every_backend(|gl| subjects.iter().for_each(|subject| body(gl, subject)));
+}
+
+/// Opens EGL as a driver that has only OpenGL ES 3.0.
+pub fn open_es_300() -> Headless {
+    Headless::open_limited(Backend::Egl, Capabilities::limit_to_es_300)
+        .expect("EGL is set up by `cargo xtask setup`")
+}
+
 pub fn pair(size: [u32; 2], dominant: Eye, ipd: f32, convention: DepthConvention) -> EyePair {
     let depth = DepthRange { near: 0.3, far: 100.0, convention };
     let frustum = Frustum::symmetric(1.2, size[0] as f32 / size[1] as f32);
@@ -122,45 +133,41 @@ pub fn positions(depth_row: &[f32], warp: &Warp) -> Vec<f64> {
 }
 
 pub fn ipd_zero_is_the_identity(subjects: &[Subject]) {
-    on_every_backend(|gl| {
-        for subject in subjects {
-            for dominant in Eye::BOTH {
-                let p = pair([96, 33], dominant, 0.0, DepthConvention::Standard);
-                let warp = p.synthesis_views(GuardBand::Pixels(5)).unwrap();
-                let (rgba, depth) = scene(warp.warp.source_size, p.depth, 9);
-                let result = subject.in_memory(gl).run(&rgba, &depth, &warp.warp);
-                for y in 0..33 {
-                    let crop = warp.dominant_crop[0] as usize * 4;
-                    let source = &row(&rgba, y, 101 * 4)[crop..][..96 * 4];
-                    assert_eq!(row(&result.rgba, y, 96 * 4), source, "{subject:?} {dominant:?} row {y}");
-                }
+    for_each(subjects, |gl, subject| {
+        for dominant in Eye::BOTH {
+            let p = pair([96, 33], dominant, 0.0, DepthConvention::Standard);
+            let warp = p.synthesis_views(GuardBand::Pixels(5)).unwrap();
+            let (rgba, depth) = scene(warp.warp.source_size, p.depth, 9);
+            let result = subject.in_memory(gl).run(&rgba, &depth, &warp.warp);
+            for y in 0..33 {
+                let crop = warp.dominant_crop[0] as usize * 4;
+                let source = &row(&rgba, y, 101 * 4)[crop..][..96 * 4];
+                assert_eq!(row(&result.rgba, y, 96 * 4), source, "{subject:?} {dominant:?} row {y}");
             }
         }
     });
 }
 
 pub fn a_plane_shifts_by_its_disparity(subjects: &[Subject]) {
-    on_every_backend(|gl| {
-        for subject in subjects {
-            for dominant in Eye::BOTH {
-                // The depth at which f_px * IPD / z is exactly 7 pixels.
-                let p = pair([128, 16], dominant, 0.063, DepthConvention::Reversed);
-                let z = p.focal_length_pixels() * 0.063 / 7.0;
-                let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
-                let (rgba, _) = scene(warp.source_size, p.depth, 10);
-                let depth = vec![p.depth.depth(z); 128 * 16];
-                let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
-                let shift: i32 = if dominant == Eye::Right { 7 } else { -7 };
-                for y in 0..16 {
-                    for x in 8..120i32 {
-                        let (got, want) = ((y * 128 + x) as usize * 4, (y * 128 + x - shift) as usize * 4);
-                        for c in 0..4 {
-                            // A thousandth of a pixel may remain.
-                            assert!(
-                                result.rgba[got + c].abs_diff(rgba[want + c]) <= 1,
-                                "{subject:?} {dominant:?} ({x}, {y})"
-                            );
-                        }
+    for_each(subjects, |gl, subject| {
+        for dominant in Eye::BOTH {
+            // The depth at which f_px * IPD / z is exactly 7 pixels.
+            let p = pair([128, 16], dominant, 0.063, DepthConvention::Reversed);
+            let z = p.focal_length_pixels() * 0.063 / 7.0;
+            let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
+            let (rgba, _) = scene(warp.source_size, p.depth, 10);
+            let depth = vec![p.depth.depth(z); 128 * 16];
+            let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
+            let shift: i32 = if dominant == Eye::Right { 7 } else { -7 };
+            for y in 0..16 {
+                for x in 8..120i32 {
+                    let (got, want) = ((y * 128 + x) as usize * 4, (y * 128 + x - shift) as usize * 4);
+                    for c in 0..4 {
+                        // A thousandth of a pixel may remain.
+                        assert!(
+                            result.rgba[got + c].abs_diff(rgba[want + c]) <= 1,
+                            "{subject:?} {dominant:?} ({x}, {y})"
+                        );
                     }
                 }
             }
@@ -169,78 +176,65 @@ pub fn a_plane_shifts_by_its_disparity(subjects: &[Subject]) {
 }
 
 pub fn dominant_left_is_the_mirror_of_dominant_right(subjects: &[Subject]) {
-    on_every_backend(|gl| {
-        for subject in subjects {
-            let [w, h] = [130usize, 24];
-            let right = pair([w as u32, h as u32], Eye::Right, 0.063, DepthConvention::Standard);
-            let left = EyePair { dominant: Eye::Left, ..right };
-            let (rgba, depth) = scene(right.size, right.depth, 11);
-            let flip = |bytes: &[u8]| -> Vec<u8> {
-                bytes.chunks_exact(w * 4).flat_map(|r| r.chunks_exact(4).rev().flatten().copied()).collect()
-            };
-            let depth_flipped: Vec<f32> =
-                depth.chunks_exact(w).flat_map(|r| r.iter().rev().copied()).collect();
-            let mut pipeline = subject.in_memory(gl);
-            let warp = |p: EyePair| p.synthesis_views(GuardBand::None).unwrap().warp;
-            let a = pipeline.run(&rgba, &depth, &warp(right));
-            let b = pipeline.run(&flip(&rgba), &depth_flipped, &warp(left));
-            let different = a.rgba.iter().zip(&flip(&b.rgba)).filter(|(a, b)| a.abs_diff(**b) > 1).count();
-            assert!(different * 1000 <= a.rgba.len(), "{subject:?}: {different} of {}", a.rgba.len());
-        }
+    for_each(subjects, |gl, subject| {
+        let [w, h] = [130usize, 24];
+        let right = pair([w as u32, h as u32], Eye::Right, 0.063, DepthConvention::Standard);
+        let left = EyePair { dominant: Eye::Left, ..right };
+        let (rgba, depth) = scene(right.size, right.depth, 11);
+        let flip = |bytes: &[u8]| -> Vec<u8> {
+            bytes.chunks_exact(w * 4).flat_map(|r| r.chunks_exact(4).rev().flatten().copied()).collect()
+        };
+        let depth_flipped: Vec<f32> = depth.chunks_exact(w).flat_map(|r| r.iter().rev().copied()).collect();
+        let mut pipeline = subject.in_memory(gl);
+        let warp = |p: EyePair| p.synthesis_views(GuardBand::None).unwrap().warp;
+        let a = pipeline.run(&rgba, &depth, &warp(right));
+        let b = pipeline.run(&flip(&rgba), &depth_flipped, &warp(left));
+        let different = a.rgba.iter().zip(&flip(&b.rgba)).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+        assert!(different * 1000 <= a.rgba.len(), "{subject:?}: {different} of {}", a.rgba.len());
     });
 }
 
 pub fn a_repeated_run_is_bit_identical(subjects: &[Subject]) {
-    on_every_backend(|gl| {
-        for subject in subjects {
-            let p = pair([200, 50], Eye::Right, 0.07, DepthConvention::Standard);
-            let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
-            let (rgba, depth) = scene(p.size, p.depth, 12);
-            let first = subject.in_memory(gl).run(&rgba, &depth, &warp);
-            let mut again = subject.in_memory(gl);
-            // Earlier contents of the buffers must not show through.
-            let (other, other_depth) = scene(p.size, p.depth, 13);
-            again.run(&other, &other_depth, &warp);
-            assert_eq!(again.run(&rgba, &depth, &warp), first, "{subject:?}");
-        }
+    for_each(subjects, |gl, subject| {
+        let p = pair([200, 50], Eye::Right, 0.07, DepthConvention::Standard);
+        let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
+        let (rgba, depth) = scene(p.size, p.depth, 12);
+        let first = subject.in_memory(gl).run(&rgba, &depth, &warp);
+        let mut again = subject.in_memory(gl);
+        // Earlier contents of the buffers must not show through.
+        let (other, other_depth) = scene(p.size, p.depth, 13);
+        again.run(&other, &other_depth, &warp);
+        assert_eq!(again.run(&rgba, &depth, &warp), first, "{subject:?}");
     });
 }
 
 /// A near red square in front of a far blue wall: every pixel of the other eye is red, blue or between, and what is
 /// uncovered beside the square is blue.
 pub fn a_hole_takes_nothing_nearer_than_its_background(subjects: &[Subject]) {
-    on_every_backend(|gl| {
-        for subject in subjects {
-            for dominant in Eye::BOTH {
-                let [w, h] = [160usize, 40];
-                let p = pair([w as u32, h as u32], dominant, 0.063, DepthConvention::Standard);
-                let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
-                let square = |i: usize| (60..100).contains(&(i % w)) && (10..30).contains(&(i / w));
-                let depth: Vec<f32> =
-                    (0..w * h).map(|i| p.depth.depth(if square(i) { 0.6 } else { 8.0 })).collect();
-                let rgba: Vec<u8> = (0..w * h)
-                    .flat_map(|i| if square(i) { [255, 0, 0, 255] } else { [0, 0, 255, 255] })
-                    .collect();
-                let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
-                let mut holes = 0;
-                for (i, entry) in result.source_map.iter().enumerate() {
-                    let color = &result.rgba[i * 4..][..4];
-                    assert_eq!(color[1], 0);
-                    assert_eq!(color[3], 255, "{subject:?}: no pixel is left unfilled");
-                    if entry & SOURCE_MAP_HOLE != 0 {
-                        holes += 1;
-                        assert_eq!(
-                            color,
-                            [0, 0, 255, 255],
-                            "{subject:?} {dominant:?} ({}, {})",
-                            i % w,
-                            i / w
-                        );
-                    }
+    for_each(subjects, |gl, subject| {
+        for dominant in Eye::BOTH {
+            let [w, h] = [160usize, 40];
+            let p = pair([w as u32, h as u32], dominant, 0.063, DepthConvention::Standard);
+            let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
+            let square = |i: usize| (60..100).contains(&(i % w)) && (10..30).contains(&(i / w));
+            let depth: Vec<f32> =
+                (0..w * h).map(|i| p.depth.depth(if square(i) { 0.6 } else { 8.0 })).collect();
+            let rgba: Vec<u8> = (0..w * h)
+                .flat_map(|i| if square(i) { [255, 0, 0, 255] } else { [0, 0, 255, 255] })
+                .collect();
+            let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
+            let mut holes = 0;
+            for (i, entry) in result.source_map.iter().enumerate() {
+                let color = &result.rgba[i * 4..][..4];
+                assert_eq!(color[1], 0);
+                assert_eq!(color[3], 255, "{subject:?}: no pixel is left unfilled");
+                if entry & SOURCE_MAP_HOLE != 0 {
+                    holes += 1;
+                    assert_eq!(color, [0, 0, 255, 255], "{subject:?} {dominant:?} ({}, {})", i % w, i / w);
                 }
-                let uncovered = p.focal_length_pixels() * 0.063 * (1.0 / 0.6 - 1.0 / 8.0);
-                assert!(holes as f32 >= 20.0 * (uncovered - 1.0), "{subject:?}: {holes} hole pixels");
             }
+            let uncovered = p.focal_length_pixels() * 0.063 * (1.0 / 0.6 - 1.0 / 8.0);
+            assert!(holes as f32 >= 20.0 * (uncovered - 1.0), "{subject:?}: {holes} hole pixels");
         }
     });
 }
@@ -249,52 +243,48 @@ pub fn a_hole_takes_nothing_nearer_than_its_background(subjects: &[Subject]) {
 pub fn asymmetric_frusta_agree_with_the_symmetric_view(subjects: &[Subject]) {
     // The same eyes, once with a common wide frustum and once with mirrored asymmetric ones whose edges lie on the same
     // pixel grid: where both see, the pictures are equal.
-    on_every_backend(|gl| {
-        for subject in subjects {
-            let d = 0.01f32;
-            let wide = Frustum { left: -0.8, right: 0.8, bottom: -0.2, top: 0.2 };
-            let mut p = pair([160, 40], Eye::Right, 0.063, DepthConvention::Standard);
-            p.frusta = [wide; 2];
-            let mut q = p;
-            q.size = [140, 40];
-            q.frusta = [Frustum { right: 0.8 - 20.0 * d, ..wide }, Frustum { left: -0.8 + 20.0 * d, ..wide }];
-            let (wp, wq) =
-                (p.synthesis_views(GuardBand::None).unwrap(), q.synthesis_views(GuardBand::None).unwrap());
-            assert_eq!(wq.warp.source_size, [160, 40], "the union");
-            assert_eq!(wq.dominant_crop, [20, 0]);
-            let (rgba, depth) = scene(wp.warp.source_size, p.depth, 14);
-            let mut pipeline = subject.in_memory(gl);
-            let a = pipeline.run(&rgba, &depth, &wp.warp);
-            let b = pipeline.run(&rgba, &depth, &wq.warp);
-            let mut different = 0;
-            for y in 0..40 {
-                let (ra, rb) = (row(&a.rgba, y, 160 * 4), row(&b.rgba, y, 140 * 4));
-                different += ra.iter().zip(rb).filter(|(a, b)| a.abs_diff(**b) > 1).count();
-            }
-            assert!(different * 1000 <= b.rgba.len(), "{subject:?}: {different}");
+    for_each(subjects, |gl, subject| {
+        let d = 0.01f32;
+        let wide = Frustum { left: -0.8, right: 0.8, bottom: -0.2, top: 0.2 };
+        let mut p = pair([160, 40], Eye::Right, 0.063, DepthConvention::Standard);
+        p.frusta = [wide; 2];
+        let mut q = p;
+        q.size = [140, 40];
+        q.frusta = [Frustum { right: 0.8 - 20.0 * d, ..wide }, Frustum { left: -0.8 + 20.0 * d, ..wide }];
+        let (wp, wq) =
+            (p.synthesis_views(GuardBand::None).unwrap(), q.synthesis_views(GuardBand::None).unwrap());
+        assert_eq!(wq.warp.source_size, [160, 40], "the union");
+        assert_eq!(wq.dominant_crop, [20, 0]);
+        let (rgba, depth) = scene(wp.warp.source_size, p.depth, 14);
+        let mut pipeline = subject.in_memory(gl);
+        let a = pipeline.run(&rgba, &depth, &wp.warp);
+        let b = pipeline.run(&rgba, &depth, &wq.warp);
+        let mut different = 0;
+        for y in 0..40 {
+            let (ra, rb) = (row(&a.rgba, y, 160 * 4), row(&b.rgba, y, 140 * 4));
+            different += ra.iter().zip(rb).filter(|(a, b)| a.abs_diff(**b) > 1).count();
         }
+        assert!(different * 1000 <= b.rgba.len(), "{subject:?}: {different}");
     });
 }
 
 pub fn one_pixel_and_odd_sizes_work(subjects: &[Subject]) {
-    on_every_backend(|gl| {
-        for subject in subjects {
-            let mut pipeline = subject.in_memory(gl);
-            for size in [[1, 1], [3, 1], [1, 9], [17, 9], [1030, 2]] {
-                let warp = Warp {
-                    source_size: size,
-                    target_size: size,
-                    law: DisparityMap { offset: 0.0, scale: 5.0 },
-                    row_offset: 0,
-                    target_eye: Eye::Left,
-                    convention: DepthConvention::Reversed,
-                };
-                let count = (size[0] * size[1]) as usize;
-                let rgba = vec![77u8; count * 4];
-                let depth: Vec<f32> = (0..count).map(|i| (i % 5) as f32 / 4.0).collect();
-                let result = pipeline.run(&rgba, &depth, &warp);
-                assert!(result.rgba.iter().all(|&v| v == 77), "{subject:?} {size:?}");
-            }
+    for_each(subjects, |gl, subject| {
+        let mut pipeline = subject.in_memory(gl);
+        for size in [[1, 1], [3, 1], [1, 9], [17, 9], [1030, 2]] {
+            let warp = Warp {
+                source_size: size,
+                target_size: size,
+                law: DisparityMap { offset: 0.0, scale: 5.0 },
+                row_offset: 0,
+                target_eye: Eye::Left,
+                convention: DepthConvention::Reversed,
+            };
+            let count = (size[0] * size[1]) as usize;
+            let rgba = vec![77u8; count * 4];
+            let depth: Vec<f32> = (0..count).map(|i| (i % 5) as f32 / 4.0).collect();
+            let result = pipeline.run(&rgba, &depth, &warp);
+            assert!(result.rgba.iter().all(|&v| v == 77), "{subject:?} {size:?}");
         }
     });
 }
@@ -302,28 +292,22 @@ pub fn one_pixel_and_odd_sizes_work(subjects: &[Subject]) {
 /// With infinite or NaN depth, as divisions by zero give, the search terminates, and rows away from the damaged one do
 /// not change.
 pub fn depth_that_is_no_number_ends(subjects: &[Subject]) {
-    on_every_backend(|gl| {
-        for subject in subjects {
-            for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
-                let p = pair([96, 24], Eye::Right, 0.063, convention);
-                let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
-                let (rgba, whole) = scene(p.size, p.depth, 15);
-                let mut pipeline = subject.in_memory(gl);
-                let want = pipeline.run(&rgba, &whole, &warp);
-                for value in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
-                    let mut depth = whole.clone();
-                    depth[8 * 96..16 * 96].iter_mut().skip(1).step_by(3).for_each(|d| *d = value);
-                    depth[12 * 96..13 * 96].fill(value);
-                    let got = pipeline.run(&rgba, &depth, &warp);
-                    // Fills reach as many rows as the hole's background is pixels away, at most twelve (`fill_spread`).
-                    // Here no surface moves by more than six pixels.
-                    assert_eq!(row(&got.rgba, 0, 96 * 4), row(&want.rgba, 0, 96 * 4), "{subject:?} {value}");
-                    assert_eq!(
-                        row(&got.rgba, 23, 96 * 4),
-                        row(&want.rgba, 23, 96 * 4),
-                        "{subject:?} {value}"
-                    );
-                }
+    for_each(subjects, |gl, subject| {
+        for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+            let p = pair([96, 24], Eye::Right, 0.063, convention);
+            let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
+            let (rgba, whole) = scene(p.size, p.depth, 15);
+            let mut pipeline = subject.in_memory(gl);
+            let want = pipeline.run(&rgba, &whole, &warp);
+            for value in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
+                let mut depth = whole.clone();
+                depth[8 * 96..16 * 96].iter_mut().skip(1).step_by(3).for_each(|d| *d = value);
+                depth[12 * 96..13 * 96].fill(value);
+                let got = pipeline.run(&rgba, &depth, &warp);
+                // Fills reach as many rows as the hole's background is pixels away, at most twelve (`fill_hole`).
+                // Here no surface moves by more than six pixels.
+                assert_eq!(row(&got.rgba, 0, 96 * 4), row(&want.rgba, 0, 96 * 4), "{subject:?} {value}");
+                assert_eq!(row(&got.rgba, 23, 96 * 4), row(&want.rgba, 23, 96 * 4), "{subject:?} {value}");
             }
         }
     });

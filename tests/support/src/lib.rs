@@ -14,3 +14,4 @@ pub mod in_memory;
 pub mod laws;
 pub mod modules;
 pub mod posed;
+pub mod table;

@@ -1,4 +1,6 @@
-//! Opens pages of the package for three.js in a browser.
+//! The package for three.js: its shaders, and its pages opened in a browser.
+
+pub mod shaders;
 
 use std::env;
 use std::fs;

@@ -20,6 +20,14 @@ pub fn wgsl() -> anyhow::Result<String> {
     compile("yoro-wgpu", "shaders", "YORO_BLESS_WGSL", "app/engines/wgpu/src/wgsl")
 }
 
+/// Preprocesses all passes for three.js, and returns a text on what to check next.
+///
+/// # Errors
+/// Fails if glslang is missing.
+pub fn three() -> anyhow::Result<String> {
+    compile("yoro-three-tests", "shaders", "YORO_BLESS_THREE", "app/engines/three/src/shaders.js")
+}
+
 /// Runs the test that detects outdated modules. It knows their sources, and renews them if `bless` is set.
 fn compile(package: &str, test: &str, bless: &str, folder: &str) -> anyhow::Result<String> {
     cargo::succeeds(&["xtask", "setup"], &[]);

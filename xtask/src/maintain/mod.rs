@@ -8,7 +8,7 @@ pub mod shader_cost;
 
 use clap::Subcommand;
 
-use crate::{console, kit};
+use crate::console;
 
 #[derive(Subcommand)]
 pub(crate) enum Task {
@@ -48,7 +48,7 @@ pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
         }
         Task::Spirv => (compile::spirv()?, true),
         Task::Wgsl => (compile::wgsl()?, true),
-        Task::Three => (kit::three()?, true),
+        Task::Three => (compile::three()?, true),
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
         Task::Godot => (godot::usage()?, true),

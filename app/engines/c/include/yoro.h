@@ -933,7 +933,7 @@ typedef struct {
 
 /**
  * The image in whose normalized device coordinates motion vectors are given. A vector is the place of a surface minus its
- * place in the former frame, each with the view of its own frame, so that the head's motion is in it. It has three
+ * place in the previous frame, each with the view of its own frame, so that the head's motion is in it. It has three
  * components: two do not tell how a surface that comes nearer moves in the other eye.
  */
 typedef uint32_t YoroVectors;
@@ -947,7 +947,7 @@ typedef uint32_t YoroVectors;
 #define YORO_VECTORS_EYE 1
 
 /**
- * Two frames, of which the vectors of the newer one point to the former.
+ * Two frames, of which the vectors of the newer one point to the previous.
  */
 typedef struct {
   /**
@@ -964,9 +964,9 @@ typedef struct {
    */
   const YoroEyes *eyes;
   /**
-   * The eyes of the former frame, of the same size. Distance, angles and planes may have changed.
+   * The eyes of the previous frame, of the same size. Distance, angles and planes may have changed.
    */
-  const YoroEyes *former;
+  const YoroEyes *previous;
   /**
    * Receives error messages.
    */

@@ -1,8 +1,5 @@
 //! The files of the shader kit: the gather pipeline and any view, for engines that bring their own passes.
 
-#[path = "three.rs"]
-mod three;
-
 use std::fmt::Write as _;
 use std::fs;
 use std::io;
@@ -64,8 +61,6 @@ pub fn write(folder: &Path) -> io::Result<()> {
     for (name, vertex, fragment, versions) in GODOT {
         put(&folder.join("godot").join(name), &godot(vertex, fragment, versions)?)?;
     }
-    fs::create_dir_all(folder.join("three"))?;
-    put(&folder.join("three/shaders.js"), &three::module()?)?;
     for (name, text) in [
         ("yoro_kit.h", include_str!("yoro_kit.h")),
         ("example.c", include_str!("example.c")),

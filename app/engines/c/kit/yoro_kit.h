@@ -158,13 +158,13 @@ static inline void yoro_kit_place(const YoroKitEyes *eyes, double place[2]) {
 
 /*
  * Fills the rest of the block for motion vectors, whose colour is RGBA16F: the place of a surface minus its place in the
- * former frame, in normalized device coordinates of the rendered eye itself (not of the wider image), with three
+ * previous frame, in normalized device coordinates of the rendered eye itself (not of the wider image), with three
  * components. `minus_one` is 1 if their z is from -1 to 1 (OpenGL), 0 if from 0 to 1. The eyes' size is that of an eye's
  * vectors.
  */
-static inline void yoro_kit_motion(const YoroKitEyes *eyes, const YoroKitEyes *former, int minus_one, float motion[4]) {
+static inline void yoro_kit_motion(const YoroKitEyes *eyes, const YoroKitEyes *previous, int minus_one, float motion[4]) {
   double now[2], then[2];
-  yoro_kit_place(eyes, now), yoro_kit_place(former, then);
+  yoro_kit_place(eyes, now), yoro_kit_place(previous, then);
   motion[0] = (float)(then[1] / (minus_one ? 2.0 : 1.0));
   motion[1] = (float)(now[1] - then[1]), motion[2] = (float)(now[0] - then[0]);
   motion[3] = 0;

@@ -12,7 +12,7 @@ use yoro::opengl::{
     self, AnyView, Composer, Context, Destination, Gather, GlApi, GlState, Motion, Options, Outputs, Part,
     PassTime, Profiling, Source,
 };
-use yoro::synthesis::backend::{Kind, WarpKind};
+use yoro::synthesis::backend::WarpKind;
 
 use crate::context::{
     Backend, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, YoroTimes, create, enter_as,
@@ -25,7 +25,7 @@ use crate::result::{
     YoroResult,
 };
 use crate::types::{
-    YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroOutputFlags, YoroWarpKind, other_kind, warp_kind,
+    Kind, YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroOutputFlags, YoroWarpKind, other_kind, warp_kind,
 };
 use crate::versioned::{self, versioned};
 use crate::views::{YoroWarp, read_warp};
@@ -404,7 +404,7 @@ impl Gl {
         let context = unsafe { Context::with_loader(entry_points::wrap(load)?, load)? };
         let has = |bit| info.sources & bit != 0;
         let (parts, array_textures) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
-        let options = Options { gl_state, parts, array_textures, depth_pairs: false };
+        let options = Options { gl_state, parts, array_textures, ..Options::default() };
         let passes = match kind {
             Kind::AnyView => Passes::Pose(Box::new(AnyView::new(&context, &options, outputs)?)),
             Kind::Gather => Passes::Eyes(Box::new(Gather::new(&context, &options, outputs)?)),
@@ -473,7 +473,7 @@ impl Gl {
                 "layer is for YORO_GL_SOURCE_LAYERS only: set it to 0, or choose array textures",
             ));
         }
-        let source = Source { color, depth, part, layer: images.layer };
+        let source = Source { part, layer: images.layer, ..Source::new(color, depth) };
         let limit = self.context.capabilities().max_texture_size;
         if images.x > limit || images.y > limit {
             return Err(Failure::value(format!(

@@ -9,7 +9,7 @@ use crate::versioned::{self, check_reserved, versioned};
 use crate::views::{YoroWarp, guard_band, turned};
 
 /// The image in whose normalized device coordinates motion vectors are given. A vector is the place of a surface minus its
-/// place in the former frame, each with the view of its own frame, so that the head's motion is in it. It has three
+/// place in the previous frame, each with the view of its own frame, so that the head's motion is in it. It has three
 /// components: two do not tell how a surface that comes nearer moves in the other eye.
 pub type YoroVectors = u32;
 /// The rendered view with its guard band: what an engine writes with the projection of YoroViews::source.
@@ -17,7 +17,7 @@ pub const YORO_VECTORS_SOURCE: YoroVectors = 0;
 /// The rendered eye without the guard band: its own vectors are a part of the image.
 pub const YORO_VECTORS_EYE: YoroVectors = 1;
 
-/// Two frames, of which the vectors of the newer one point to the former.
+/// Two frames, of which the vectors of the newer one point to the previous.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroMotion {
@@ -28,8 +28,8 @@ pub struct YoroMotion {
     /// The eyes of this frame. Their size is that of an eye's vectors, as a runtime recommends it, not that of the image.
     /// The clip volume is that of the vectors.
     pub eyes: *const YoroEyes,
-    /// The eyes of the former frame, of the same size. Distance, angles and planes may have changed.
-    pub former: *const YoroEyes,
+    /// The eyes of the previous frame, of the same size. Distance, angles and planes may have changed.
+    pub previous: *const YoroEyes,
     /// Receives error messages.
     pub messages: YoroMessages,
 }
@@ -87,15 +87,15 @@ pub unsafe extern "C" fn yoro_motion_warp(
             ));
         }
         // SAFETY: as above.
-        let [eyes, former] = unsafe {
-            [versioned::read(motion.eyes, "eyes")?, versioned::read(motion.former, "former eyes")?]
+        let [eyes, previous] = unsafe {
+            [versioned::read(motion.eyes, "eyes")?, versioned::read(motion.previous, "previous eyes")?]
         };
         let views = |eyes: &YoroEyes| {
             let checked = eyes.checked()?;
             let pair = turned(checked.pair, eyes.rows == YORO_ROWS_DOWN);
             Ok::<_, Failure>(pair.synthesis_views(guard_band(eyes.guard_band))?)
         };
-        let (now, then) = (views(&eyes)?, views(&former)?);
+        let (now, then) = (views(&eyes)?, views(&previous)?);
         let ndc = if eyes.clip == YORO_CLIP_OPENGL { Ndc::MinusOneToOne } else { Ndc::ZeroToOne };
         let space = VectorSpace { ndc, of: vectors_of(motion.vectors)? };
         let result = YoroMotionWarp::new(&now.motion(&then, space)?);

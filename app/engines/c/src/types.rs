@@ -1,7 +1,6 @@
 //! Versions, and the small types that the structures consist of.
 
 use yoro::eyes::{DepthConvention, Eye};
-use yoro::synthesis::backend::Kind;
 
 use crate::result::Failure;
 
@@ -64,6 +63,14 @@ pub const YORO_WARP_KIND_POSE: YoroWarpKind = 1;
 
 /// Motion vectors between two parallel eyes, with a YoroMotionWarp. The colour is RGBA16F, and each texel a vector.
 pub const YORO_WARP_KIND_MOTION: YoroWarpKind = 2;
+
+/// A kind of warp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Gather,
+    Motion,
+    AnyView,
+}
 
 /// Returns the kind of a constant.
 pub(crate) fn warp_kind(kind: YoroWarpKind) -> Result<Kind, Failure> {

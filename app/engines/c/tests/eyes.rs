@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{gl_info, good_eyes, matrices_of, messages, views_of, views_of_matrices};
+use common::{gl_info, good_eyes, left_handed, matrices_of, messages, views_of, views_of_matrices};
 use glam::{DMat4, DQuat, DVec3, EulerRot};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
@@ -63,21 +63,9 @@ fn flags_turn_the_matrices_of_canted_and_displaced_eyes() {
         let placed = glam::Mat4::from_rotation_translation(orientation, pose.position.into());
         *view = placed.inverse().to_cols_array();
     }
-    for left_handed in [false, true] {
+    for (matrices, mirror, unit) in [(matrices, 1.0, 1.0), (left_handed(matrices), -1.0, 100.0)] {
         let mut noted = Vec::new();
-        let mirror = if left_handed { -1.0 } else { 1.0 };
-        let mut given = YoroMatrices { messages: messages(&mut noted), ..matrices };
-        if left_handed {
-            for (view, projection) in given.view.iter_mut().zip(&mut given.projection) {
-                (0..4).for_each(|column| view[4 * column + 2] *= -1.0);
-                (0..4).for_each(|row| view[8 + row] *= -1.0);
-                (0..4).for_each(|row| projection[8 + row] *= -1.0);
-                (0..3).for_each(|row| view[12 + row] *= 100.0);
-                projection[14] *= 100.0;
-            }
-            given.units_per_metre = 100.0;
-        }
-        let unit = if left_handed { 100.0 } else { 1.0 };
+        let given = YoroMatrices { messages: messages(&mut noted), ..matrices };
         assert_eq!(views_of_matrices(&given).map(drop), Err(YORO_ERROR_EYES_CANTED));
         assert!(noted[0].1.ends_with("(YORO_EYES_PARALLEL)"), "{noted:?}");
         let views = views_of_matrices(&YoroMatrices { flags: YORO_EYES_PARALLEL, ..given }).unwrap();

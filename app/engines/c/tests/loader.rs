@@ -7,7 +7,7 @@ use std::ffi::{CStr, c_char, c_void};
 use std::mem::transmute;
 use std::ptr::null_mut;
 
-use common::{framebuffer, gl_info, good_eyes, texture, views_of, zeroed};
+use common::{gl_info, good_eyes, views_of};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
@@ -64,22 +64,11 @@ fn create(info: &YoroGlInfo, noted: &mut Noted) -> Result<*mut YoroContext, (Yor
     }
 }
 
-/// Creates textures of the size of the views, and a framebuffer of the size of the eyes.
-fn images(gl: &glow::Context) -> (YoroViews, YoroGlImages) {
+/// Returns views, and images of their sizes.
+fn views_and_images(gl: &glow::Context) -> (YoroViews, YoroGlImages) {
     let views = views_of(&good_eyes()).unwrap();
-    let (size, target_size) = ([views.source.width, views.source.height], [160, 120]);
-    // SAFETY: the context is current.
-    let made = |target, format, size| unsafe { texture(gl, target, format, size) };
-    let color = made(glow::TEXTURE_2D, glow::RGBA8, size);
-    let depth = made(glow::TEXTURE_2D, glow::DEPTH_COMPONENT24, size);
-    let target = made(glow::TEXTURE_2D, glow::RGBA8, target_size);
-    let target_depth = made(glow::TEXTURE_2D, glow::DEPTH_COMPONENT24, target_size);
-    let attachments = [(glow::COLOR_ATTACHMENT0, target), (glow::DEPTH_ATTACHMENT, target_depth)];
-    let mut images: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
-    (images.color_texture, images.depth_texture) = (color, depth);
-    // SAFETY: the context is current and the textures are its own.
-    images.framebuffer = unsafe { framebuffer(gl, &attachments) };
-    (views, images)
+    let size = [views.source.width, views.source.height];
+    (views, common::images(gl, glow::RGBA8, size, [160, 120]))
 }
 
 /// Only functions that are checked for at first are called. glow would panic otherwise.
@@ -91,7 +80,7 @@ fn the_needed_functions_are_enough() {
     for &backend in backends() {
         with_context(backend, |gl, desktop| {
             IS_LOADED.set(if desktop { is_needed::<true> } else { is_needed::<false> });
-            let (views, images) = images(gl);
+            let (views, images) = views_and_images(gl);
             for state in [YORO_GL_STATE_LEAVE, YORO_GL_STATE_PRESERVE] {
                 let mut noted = Vec::new();
                 let outputs = YORO_OUTPUT_DEPTH | YORO_OUTPUT_SRGB;
@@ -167,7 +156,7 @@ fn a_driver_without_memory_has_its_own_code() {
         let mut noted = Vec::new();
         let info = YoroGlInfo { loader: Some(load_full), check: 0, ..gl_info(&mut noted) };
         let context = create(&info, &mut noted).unwrap();
-        let (views, images) = images(gl);
+        let (views, images) = views_and_images(gl);
         // SAFETY: alive until the last line, complete structures, a current context.
         unsafe {
             IS_FULL.set(true);
@@ -189,7 +178,7 @@ fn a_thread_without_a_context_is_told() {
         let mut noted = Vec::new();
         let info = YoroGlInfo { loader: Some(load_some), ..gl_info(&mut noted) };
         let context = create(&info, &mut noted).unwrap();
-        let (views, images) = images(gl);
+        let (views, images) = views_and_images(gl);
         let shared = Shared(context, views, images);
         let codes = std::thread::spawn(move || {
             let Shared(context, views, images) = { shared };

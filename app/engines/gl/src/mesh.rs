@@ -144,14 +144,14 @@ impl Mesh {
 
     /// Binds the vertex array as [`Mesh::bind`] does, with one more attribute at the location after the last one: the first
     /// three floats of each vertex before the last [`Mesh::rewrite`], or its present ones if it has not `moved`.
-    pub fn bind_with_former(&self, moved: bool) {
+    pub fn bind_with_previous(&self, moved: bool) {
         self.bind();
         let back = if moved { self.copies.len() - 1 } else { 0 };
-        let former = self.copies[(self.current + back) % self.copies.len()].1;
+        let previous = self.copies[(self.current + back) % self.copies.len()].1;
         let gl = self.gl.raw();
         // SAFETY: the buffer lives as long as the vertex array, and its vertices begin with three floats or are longer.
         unsafe {
-            gl.bind_buffer(glow::ARRAY_BUFFER, Some(former));
+            gl.bind_buffer(glow::ARRAY_BUFFER, Some(previous));
             gl.enable_vertex_attrib_array(self.free_location);
             let stride = self.vertex_bytes as i32;
             gl.vertex_attrib_pointer_f32(self.free_location, 3, glow::FLOAT, false, stride, 0);

@@ -332,14 +332,14 @@ impl TileTarget {
             return Ok(());
         }
         let gl = self.gl.raw();
-        let former = self.textures.len().saturating_sub(1);
+        let previous = self.textures.len().saturating_sub(1);
         self.textures.clear();
         let buffers: Vec<u32> = (0..colors.len() as u32).map(|i| glow::COLOR_ATTACHMENT0 + i).collect();
         let attachments = buffers.iter().copied().chain([glow::DEPTH_ATTACHMENT]);
         // SAFETY: the caller's textures, and the entry point exists by `tile_samples`.
         let status = unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
-            for unused in colors.len()..former {
+            for unused in colors.len()..previous {
                 let attachment = glow::COLOR_ATTACHMENT0 + unused as u32;
                 gl.framebuffer_texture_2d(glow::FRAMEBUFFER, attachment, glow::TEXTURE_2D, None, 0);
             }

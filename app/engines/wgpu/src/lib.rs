@@ -1,10 +1,10 @@
 //! Renders one eye and synthesizes the other, on wgpu: the passes of [`yoro`] in the caller's command encoder.
 //!
-//! [`Gather`] takes colour and depth of one eye as texture views, and draws the other eye. It is the counterpart of
-//! `yoro::vulkan`, and uses the same shaders. [`yoro::eyes`] computes which view to render, and the
-//! [`Warp`](yoro::eyes::Warp). [`AnyView`] is used in the same way, with a [`PoseWarp`](yoro::eyes::PoseWarp), and
-//! draws a view in any pose near that of the source. [`Motion`] makes the other eye's motion vectors,
-//! [`Composer`] an eye from the levels of a foveated view. wgpu is part of the public API, and is re-exported as [`wgpu`].
+//! [`Gather`] reads the colour and depth of one eye from texture views, and draws the other eye. It is the counterpart of
+//! `yoro::vulkan`, and runs the same shaders. [`yoro::eyes`] computes the view to render and the
+//! [`Warp`](yoro::eyes::Warp). [`AnyView`] draws a view in any pose near the source's from a
+//! [`PoseWarp`](yoro::eyes::PoseWarp), [`Motion`] makes the other eye's motion vectors, and a [`Composer`] combines the
+//! layers of a foveated view into the eye that is shown. wgpu is part of the public API, and is re-exported as [`wgpu`].
 //!
 //! Images have wgpu's own orientation, with row 0 at the top. Pass the warp as
 //! [`EyePair::synthesis_views`](yoro::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the

@@ -2,8 +2,7 @@
 
 use wgpu::{CommandEncoder, Device, Queue, TextureView};
 use yoro::eyes::{MotionWarp, PoseWarp, Warp};
-use yoro::synthesis::ArgumentError;
-use yoro::synthesis::backend::{Kind, Places, WarpKind, map_sizes};
+use yoro::synthesis::backend::{Places, WarpKind, map_sizes};
 
 use crate::buffers::Buffers;
 use crate::checks::{Checks, made, size};
@@ -103,9 +102,7 @@ impl<W: WarpKind> Pipeline<W> {
     ) -> Result<(), WgpuError> {
         let [source_size, target_size] = warp.sizes();
         self.checks.frame(source, warp.sizes(), target)?;
-        if W::KIND == Kind::Motion && source.color.texture().format().components() < 3 {
-            return Err(ArgumentError::TwoComponents.into());
-        }
+        W::check_components(source.color.texture().format().components().into())?;
         let places = Places {
             source_origin: source.origin,
             image_size: size(source.color),

@@ -1,6 +1,6 @@
 //! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo xtask maintain wgsl`.
 
-use yoro::synthesis::backend::{Kind, WarpKind};
+use yoro::synthesis::backend::{PerKind, WarpKind};
 
 pub(crate) const SCREEN: &str = include_str!("wgsl/screen.wgsl");
 pub(crate) const COMPOSE: &str = include_str!("wgsl/compose.wgsl");
@@ -41,13 +41,11 @@ const ANY_VIEW: Shaders = Shaders {
     march_depth: include_str!("wgsl/any-view-march-depth.wgsl"),
 };
 
+static SHADERS: PerKind<Shaders> = PerKind { gather: GATHER, motion: MOTION, any_view: ANY_VIEW };
+
 impl Shaders {
     pub(crate) fn of<W: WarpKind>() -> &'static Shaders {
-        match W::KIND {
-            Kind::Gather => &GATHER,
-            Kind::Motion => &MOTION,
-            Kind::AnyView => &ANY_VIEW,
-        }
+        W::of(&SHADERS)
     }
 
     /// Returns the last pass, which optionally writes depth.

@@ -3,14 +3,13 @@
 use std::ffi::{CStr, c_char};
 use std::time::Duration;
 
-use yoro::synthesis::backend::Kind;
 use yoro::vulkan::ash::{Device, Instance, StaticFn, vk};
 use yoro::vulkan::{AnyView, Composer, Gather, Host, Motion, PassTimes};
 
 use super::types::{YoroVkInfo, check_format};
 use crate::context::{Backend, YORO_API_VULKAN, YoroCapabilities, YoroTimes};
 use crate::result::{Failure, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL};
-use crate::types::warp_kind;
+use crate::types::{Kind, warp_kind};
 
 /// The passes for one kind of warp.
 pub(super) enum Passes {

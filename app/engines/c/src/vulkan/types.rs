@@ -3,7 +3,6 @@
 use std::ffi::c_char;
 
 use yoro::synthesis::ArgumentError;
-use yoro::synthesis::backend::Kind;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{ImageState, LayerImage, Options, Use, Uses, VulkanError};
 
@@ -12,7 +11,7 @@ use crate::result::{
     YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YORO_ERROR_UNSUPPORTED,
     YORO_ERROR_VALUE, YoroMessages,
 };
-use crate::types::{YoroWarpKind, warp_kind};
+use crate::types::{Kind, YoroWarpKind, warp_kind};
 use crate::versioned::versioned;
 
 /// vkGetInstanceProcAddr of the Vulkan loader, or of a layer that replaces it.

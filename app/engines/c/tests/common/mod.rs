@@ -60,6 +60,19 @@ pub fn matrices_of(views: &YoroViews, eyes: &YoroEyes) -> YoroMatrices {
     matrices
 }
 
+/// Returns the same eyes in a left-handed world, in centimetres, looking along +Z.
+pub fn left_handed(mut matrices: YoroMatrices) -> YoroMatrices {
+    for (view, projection) in matrices.view.iter_mut().zip(&mut matrices.projection) {
+        (0..4).for_each(|column| view[4 * column + 2] *= -1.0);
+        (8..12).for_each(|i| view[i] *= -1.0);
+        (8..12).for_each(|i| projection[i] *= -1.0);
+        (12..15).for_each(|i| view[i] *= 100.0);
+        projection[14] *= 100.0;
+    }
+    matrices.units_per_metre = 100.0;
+    matrices
+}
+
 pub fn views_of_matrices(matrices: &YoroMatrices) -> Result<YoroViews, YoroResult> {
     let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
     // SAFETY: both are whole structures of the sizes that they state.
@@ -126,4 +139,29 @@ pub unsafe fn framebuffer(gl: &glow::Context, attachments: &[(u32, u32)]) -> u32
         gl.bind_framebuffer(glow::FRAMEBUFFER, None);
         framebuffer.0.get()
     }
+}
+
+/// Creates a context.
+pub fn create(info: &YoroGlInfo) -> Result<*mut YoroContext, YoroResult> {
+    let mut context = std::ptr::null_mut();
+    // SAFETY: a complete structure, and a context is current.
+    match unsafe { yoro_gl_create(info, &mut context) } {
+        YORO_OK => Ok(context),
+        code => Err(code),
+    }
+}
+
+/// Creates textures of a source of this format and size, and a framebuffer with colour and depth to draw into.
+pub fn images(gl: &glow::Context, format: u32, size: [u32; 2], target_size: [u32; 2]) -> YoroGlImages {
+    let mut images: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
+    // SAFETY: the context is current; textures and framebuffer are its own.
+    unsafe {
+        let made = |format, size| texture(gl, glow::TEXTURE_2D, format, size);
+        (images.color_texture, images.depth_texture) =
+            (made(format, size), made(glow::DEPTH_COMPONENT24, size));
+        let (color, depth) = (made(format, target_size), made(glow::DEPTH_COMPONENT24, target_size));
+        images.framebuffer =
+            framebuffer(gl, &[(glow::COLOR_ATTACHMENT0, color), (glow::DEPTH_ATTACHMENT, depth)]);
+    }
+    images
 }

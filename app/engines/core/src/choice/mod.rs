@@ -9,7 +9,9 @@
 //! use yoro::choice::{Chooser, Cost, FrameEnd, StereoPath};
 //!
 //! let mut chooser = Chooser::new(StereoPath::Synthesis);
-//! # let (mut now_ns, render, timer) = (0, |_: StereoPath| (), |way| Some(if way == StereoPath::Synthesis { 6.1 } else { 8.9 }));
+//! # let mut now_ns = 0;
+//! # let render = |_: StereoPath| ();
+//! # let timer = |way| Some(if way == StereoPath::Synthesis { 6.1 } else { 8.9 });
 //! # for _ in 0..200 {
 //! // Each frame:
 //! let way = chooser.way();

@@ -21,7 +21,7 @@ pub enum VectorsOf {
     Eye,
 }
 
-/// How vectors are given. A vector is the place of a surface minus its place in the former frame, both in NDC, each with
+/// How vectors are given. A vector is the place of a surface minus its place in the previous frame, both in NDC, each with
 /// the view of its own frame: a head's motion is in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VectorSpace {
@@ -102,14 +102,14 @@ impl Place {
 const ROUNDING: f64 = 0.05;
 
 impl SynthesisViews {
-    /// Returns how vectors of the rendered view become those of the synthesized eye. Make `self` and `former`, the views
+    /// Returns how vectors of the rendered view become those of the synthesized eye. Make `self` and `previous`, the views
     /// of the frame that vectors point to, of [`EyePair`](super::EyePair)s whose size is that of an eye's vectors, which
     /// runtimes recommend. Eyes' distance, frusta and depth planes may have changed between the frames.
     ///
     /// # Errors
     /// [`EyesError::OtherFrame`] if the frames have no law in common: mark the frame as not to be extrapolated.
-    pub fn motion(&self, former: &SynthesisViews, vectors: VectorSpace) -> Result<MotionWarp, EyesError> {
-        self.motion_of(&self.warp, former, &former.warp, vectors)
+    pub fn motion(&self, previous: &SynthesisViews, vectors: VectorSpace) -> Result<MotionWarp, EyesError> {
+        self.motion_of(&self.warp, previous, &previous.warp, vectors)
     }
 
     /// Returns how vectors of the rendered view become the dominant eye's own, for hosts that can neither show a crop of an
@@ -117,8 +117,8 @@ impl SynthesisViews {
     ///
     /// # Errors
     /// Those of [`SynthesisViews::motion`].
-    pub fn own_motion(&self, former: &SynthesisViews, vectors: VectorSpace) -> Result<MotionWarp, EyesError> {
-        self.motion_of(&self.own_warp(), former, &former.own_warp(), vectors)
+    pub fn own_motion(&self, previous: &SynthesisViews, vectors: VectorSpace) -> Result<MotionWarp, EyesError> {
+        self.motion_of(&self.own_warp(), previous, &previous.own_warp(), vectors)
     }
 
     /// Returns the factors on X and Y that make the source's vectors the dominant eye's own: with the guard band, a pixel
@@ -137,14 +137,14 @@ impl SynthesisViews {
     fn motion_of(
         &self,
         warp: &Warp,
-        former_views: &SynthesisViews,
-        former: &Warp,
+        previous_views: &SynthesisViews,
+        previous: &Warp,
         VectorSpace { ndc, of }: VectorSpace,
     ) -> Result<MotionWarp, EyesError> {
-        let (now, then) = (Place::new(self, warp, of), Place::new(former_views, former, of));
+        let (now, then) = (Place::new(self, warp, of), Place::new(previous_views, previous, of));
         let [width, height] = warp.target_size.map(f64::from);
         let other = |what| Err(EyesError::OtherFrame { what });
-        if former.target_eye != warp.target_eye {
+        if previous.target_eye != warp.target_eye {
             return other("the rendered eye");
         }
         if (now.rows - then.rows).abs() * height > ROUNDING {

@@ -1,17 +1,16 @@
-//! Synthesis on OpenGL: from two textures of one eye to a framebuffer with the other eye.
+//! Synthesis on OpenGL: reads the colour and depth textures of one eye, and draws the other eye into a framebuffer.
 //!
-//! [`Gather`] takes a [`Warp`](crate::eyes::Warp) between parallel eyes, [`AnyView`] a
-//! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. [`Motion`] makes the other eye's motion
-//! vectors. All are a [`Pipeline`], and need OpenGL
-//! ES 3.0, desktop OpenGL 4.5 (4.3 with GL_ARB_ES3_1_compatibility) or WebGL 2. `examples/engine.rs` uses one in a
-//! separate engine. [`GuessedDepth`] comes before [`Gather`] where only one sample's depth of an anti-aliased image can
-//! be had.
+//! [`Gather`] draws a parallel eye from a [`Warp`](crate::eyes::Warp), and [`AnyView`] draws a view in any pose near the
+//! source's from a [`PoseWarp`](crate::eyes::PoseWarp). [`Motion`] makes the other eye's motion vectors. Each is a
+//! [`Pipeline`], and runs on OpenGL ES 3.0, on WebGL 2, and on desktop OpenGL 4.5, or 4.3 with
+//! GL_ARB_ES3_1_compatibility. `examples/engine.rs` uses one in an engine of its own.
 //!
-//! A [`Composer`] makes an eye from the levels of a foveated view.
+//! [`GuessedDepth`] runs before [`Gather`] on drivers that resolve only one depth sample of an anti-aliased image. A
+//! [`Composer`] combines the layers of a foveated view into the eye that is shown.
 //!
-//! [`Context::set_profiling`] times the passes, named `gather tiles`, `gather spans` and `gather march`, or
-//! `any view tiles` and so on, and `compose`. [`Context::end_timed_frame`], once a frame, returns the times of an earlier one without
-//! waiting; [`Context::take_pass_times`] waits.
+//! [`Context::set_profiling`] times the passes, which are named `gather tiles`, `gather spans` and `gather march`, or
+//! `any view tiles` and so on, and `compose`. Call [`Context::end_timed_frame`] once a frame: it returns the times of an
+//! earlier frame without waiting. [`Context::take_pass_times`] waits for those of this one.
 
 mod composer;
 mod guessed_depth;
@@ -74,12 +73,24 @@ pub struct Source {
     pub part: Option<Part>,
     /// The layer of both textures, for a pipeline with [`Options::array_textures`]; 0 otherwise.
     pub layer: u32,
+    /// What is added to the colours, for a [`Gather`] with [`Options::bloom`].
+    pub bloom: Option<Bloom>,
+}
+
+/// Bloom that is not yet part of a source's colours.
+#[derive(Clone, Copy, Debug)]
+pub struct Bloom {
+    /// Scene-referred light in linear RGB, over the same area as the source's textures, of any size. It is sampled with
+    /// the filter of the texture.
+    pub texture: glow::Texture,
+    /// The factor on the texture's values, the exposure included.
+    pub strength: f32,
 }
 
 impl Source {
     /// Returns a source that is the whole of two textures.
     pub fn new(color: glow::Texture, depth: glow::Texture) -> Source {
-        Source { color, depth, part: None, layer: 0 }
+        Source { color, depth, part: None, layer: 0, bloom: None }
     }
 
     /// Returns the place of the source, of this size, in its textures, and that of the target.
@@ -124,6 +135,11 @@ pub struct Options {
     /// the nearer counts. It is how depth is carried through the average of samples in a tile-based GPU; see the guide
     /// for engines.
     pub depth_pairs: bool,
+    /// True if [`Source::bloom`] is added to the synthesized colours. This saves a pass over the rendered eye. The
+    /// source's colours must be those of `tonemap` in `include/color.glsl` of `yoro-shaders`: it is undone, the light is
+    /// added, and it is applied again. Alpha becomes luma. Only for a [`Gather`], which reads the bloom by texture unit
+    /// 4; [`GlState::Preserve`] does not restore that unit.
+    pub bloom: bool,
 }
 
 impl Options {
@@ -133,6 +149,7 @@ impl Options {
             ("SOURCE_PARTS", self.parts),
             ("SOURCE_LAYERS", self.array_textures),
             ("DEPTH_PAIRS", self.depth_pairs),
+            ("BLOOM", self.bloom),
         ])
     }
 

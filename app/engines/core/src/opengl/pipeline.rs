@@ -5,29 +5,32 @@ use std::rc::Rc;
 
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
 
-use super::{GlState, Options, Outputs, Source, draw_target};
+use super::{Bloom, GlState, Options, Outputs, Source, draw_target};
 use crate::eyes::{MotionWarp, PoseWarp, Warp};
-use crate::synthesis::backend::{Kind, UniformBlock as _, WarpKind, map_sizes};
+use crate::synthesis::backend::{PerKind, UniformBlock as _, WarpKind, map_sizes};
 
-/// Synthesis between parallel eyes: the march goes along the source's row.
+/// Synthesis between parallel eyes. The march follows the source's row.
 pub type Gather = Pipeline<Warp>;
 
-/// Synthesis of a view in any pose near the source's: the march goes along a segment of any direction. For parallel eyes
-/// on a level line, it gives the same picture as [`Gather`], within the rounding of positions, but is slower. It has no
+/// Synthesis of a view in any pose near the source's. The march follows a segment of any direction. For parallel eyes on
+/// a level line it draws the same picture as [`Gather`], within the rounding of positions, but more slowly. It has no
 /// source map, which can only hold columns.
 pub type AnyView = Pipeline<PoseWarp>;
 
-/// Synthesis of motion vectors between parallel eyes, for runtimes that make frames between those that are rendered. The
-/// source's colour is the vectors' texture, RGBA16F with three components in NDC ([`VectorSpace`]), with depth of the same
-/// size: that of the vectors that a runtime recommends, not that of the eye. Two components are not enough: a hand that
-/// comes near moves sideways in the other eye, by 8 pixels of 1024. The target receives vectors, and with
-/// [`Outputs::depth`] depth. Silhouettes are not blended, and a hole has its background's vector.
+/// Synthesis of motion vectors between parallel eyes, for runtimes that make frames between those that are rendered.
+///
+/// The source's colour is the texture of the vectors, in RGBA16F, with three components in NDC ([`VectorSpace`]). It has
+/// the size that a runtime recommends for vectors, which is not that of the eye, and its depth has the same size. Two
+/// components are not enough, since a hand that comes near moves sideways in the other eye, by 8 pixels of 1024. The
+/// target receives vectors, and with [`Outputs::depth`] also depth. Silhouettes are not blended, and a hole takes the
+/// vector of its background.
 ///
 /// [`VectorSpace`]: crate::eyes::VectorSpace
 pub type Motion = Pipeline<MotionWarp>;
 
-/// The passes for a kind of warp: [`Gather`], [`AnyView`] or [`Motion`]. All are fragment passes: tile bounds, tile spans, march. The
-/// two intermediate buffers have 16 bytes per tile of 16 x 8 pixels ([`buffer_bytes`](super::buffer_bytes)).
+/// The passes for a kind of warp: [`Gather`], [`AnyView`] or [`Motion`]. They are three fragment passes, which find the
+/// bounds of tiles, find the spans of tiles, and march. The two buffers between them have 16 bytes for each tile of 16 x 8
+/// pixels ([`buffer_bytes`](super::buffer_bytes)).
 ///
 /// The context must be current on the calling thread. The picture does not depend on the context's state: a call sets
 /// all the state that it relies on. Afterwards, the state is as in the table with [`GlState::Leave`], and as before the
@@ -41,6 +44,7 @@ pub type Motion = Pipeline<MotionWarp>;
 /// | draw and read framebuffer | the target's | changed |
 /// | viewport (the first; with `OES_viewport_array` all) | the target's rectangle | changed |
 /// | 2-D texture of units 0 to 3 | depth, colour, intermediate | changed |
+/// | 2-D texture of unit 4, for sources with bloom | bloom | changed, even with `Preserve` |
 /// | array texture of units 0 and 1, for sources that are layers | depth, colour | changed |
 /// | sampler object of units 0 to 3 | yoro's own | none |
 /// | active unit | 0 to 3 | changed |
@@ -77,13 +81,17 @@ pub struct Pipeline<W> {
     warp: PhantomData<W>,
 }
 
-/// The names of the passes and their shaders.
+/// The names of the passes, their shaders, and what they can do.
 struct Shaders {
     tiles: [&'static str; 2],
     spans: [&'static str; 2],
     march: &'static str,
     march_vertex: &'static str,
     march_fragment: &'static str,
+    /// A macro of the march.
+    macro_name: Option<&'static str>,
+    writes_source_map: bool,
+    adds_bloom: bool,
 }
 
 const GATHER: Shaders = Shaders {
@@ -92,6 +100,9 @@ const GATHER: Shaders = Shaders {
     march: "gather march",
     march_vertex: "synthesis/march.vert",
     march_fragment: "synthesis/gather/march.frag",
+    macro_name: None,
+    writes_source_map: true,
+    adds_bloom: true,
 };
 
 const ANY_VIEW: Shaders = Shaders {
@@ -100,59 +111,52 @@ const ANY_VIEW: Shaders = Shaders {
     march: "any view march",
     march_vertex: "screen.vert",
     march_fragment: "synthesis/any_view/march.frag",
+    macro_name: None,
+    writes_source_map: false,
+    adds_bloom: false,
 };
 
 const MOTION: Shaders = Shaders {
     tiles: ["motion tiles", GATHER.tiles[1]],
     spans: ["motion spans", GATHER.spans[1]],
     march: "motion march",
+    macro_name: Some("MOTION"),
+    adds_bloom: false,
     ..GATHER
 };
 
-impl<W: WarpKind> Pipeline<W> {
-    const SHADERS: Shaders = match W::KIND {
-        Kind::Gather => GATHER,
-        Kind::Motion => MOTION,
-        Kind::AnyView => ANY_VIEW,
-    };
+static SHADERS: PerKind<Shaders> = PerKind { gather: GATHER, motion: MOTION, any_view: ANY_VIEW };
 
+impl Shaders {
+    fn check(&self, options: &Options, outputs: Outputs) -> Result<(), GlError> {
+        let refuse = |reason: &str| Err(GlError::Unsupported(reason.into()));
+        if outputs.source_map && !self.writes_source_map {
+            return refuse("any view has no source map, which can only hold columns");
+        }
+        if options.bloom && !self.adds_bloom {
+            return refuse("only gather adds bloom");
+        }
+        Ok(())
+    }
+}
+
+impl<W: WarpKind> Pipeline<W> {
     /// Compiles the passes. Changes the same state as [`Pipeline::prepare`], or none with [`GlState::Preserve`].
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] for an [`AnyView`] with a source map; [`GlError::Shader`] if the driver refuses a shader.
+    /// [`GlError::Unsupported`] for an [`AnyView`] with a source map, or for anything but a [`Gather`] with bloom;
+    /// [`GlError::Shader`] if the driver refuses a shader.
     pub fn new(gl: &Rc<Context>, options: &Options, outputs: Outputs) -> Result<Pipeline<W>, GlError> {
-        Pipeline::with_macros(gl, options, outputs, &[])
-    }
-
-    /// Does the same as [`Pipeline::new`] with more preprocessor macros. `BLOOM` makes a [`Gather`] add yoro's bloom to
-    /// its colours ([`Pipeline::synthesize_with`]; `include/develop.glsl`). For tests and measurements, `WITHOUT_ES_310`
-    /// takes the shaders of OpenGL ES 3.0 on any driver. `COUNT_TRIPS` makes a [`Gather`] write how often parts of the
-    /// march run, instead of colours. Red: first steps (low three bits), then one bit each for a hole, the search over
-    /// segments, and a law. Green: segments. Blue: events. Alpha: steps to a segment's crossing.
-    ///
-    /// # Errors
-    /// Those of [`Pipeline::new`].
-    pub fn with_macros(
-        gl: &Rc<Context>,
-        options: &Options,
-        outputs: Outputs,
-        macros: &[&'static str],
-    ) -> Result<Pipeline<W>, GlError> {
-        if W::KIND == Kind::AnyView && outputs.source_map {
-            return Err(GlError::Unsupported(
-                "any view has no source map, which can only hold columns".into(),
-            ));
-        }
+        let shaders = W::of(&SHADERS);
+        shaders.check(options, outputs)?;
         preserving(gl, options, outputs, || {
-            let mut defines = options.defines();
-            defines.extend(macros.iter().map(|name| (*name, String::new())));
+            let defines = options.defines();
             let screen = |file| Program::new(gl, ShaderSource::Screen(file), &defines);
             let map = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba32Ui, Filter::Nearest)], None);
-            let Shaders { tiles, spans, march_vertex, march_fragment, .. } = Self::SHADERS;
+            let Shaders { tiles, spans, march_vertex, march_fragment, macro_name, .. } = *shaders;
             let march = ShaderSource::Raster { vertex: march_vertex, fragment: march_fragment };
-            let motion = (W::KIND == Kind::Motion).then(|| ("MOTION", String::new()));
-            let march_defines: Vec<_> =
-                outputs.defines().into_iter().chain(motion).chain(defines.iter().cloned()).collect();
+            let own = macro_name.map(|name| (name, String::new()));
+            let march_defines = [outputs.defines(), own.into_iter().collect(), defines.clone()].concat();
             Ok(Pipeline {
                 gl: gl.clone(),
                 outputs,
@@ -182,24 +186,9 @@ impl<W: WarpKind> Pipeline<W> {
     /// # Errors
     /// Those of [`Pipeline::prepare`].
     pub fn synthesize(&mut self, source: Source, warp: &W, target: &Destination) -> Result<(), GlError> {
-        self.synthesize_with(source, warp, target, |_| {})
-    }
-
-    /// Like [`Pipeline::synthesize`]; `set` sets what the last pass has by [`Pipeline::with_macros`], in its bound
-    /// program. Texture units from 4 on are free.
-    ///
-    /// # Errors
-    /// Those of [`Pipeline::prepare`].
-    pub fn synthesize_with(
-        &mut self,
-        source: Source,
-        warp: &W,
-        target: &Destination,
-        set: impl FnOnce(&Program),
-    ) -> Result<(), GlError> {
         self.preserving(|pipeline| {
             pipeline.resize(warp)?;
-            pipeline.draw(source, warp, target, set);
+            pipeline.draw(source, warp, target);
             Ok(())
         })
     }
@@ -218,31 +207,34 @@ impl<W: WarpKind> Pipeline<W> {
         Ok(())
     }
 
-    fn draw(&self, source: Source, warp: &W, target: &Destination, set: impl FnOnce(&Program)) {
+    fn draw(&self, source: Source, warp: &W, target: &Destination) {
         let gl = &*self.gl;
         let [tile_size, span_size] = map_sizes::<W>(warp.sizes());
         gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
+        let shaders = W::of(&SHADERS);
         let uniforms = warp.uniforms(&source.places(warp.sizes()[0], target, self.options.parts));
         let begin = |program: &Program| {
             self.options.bind_source(program.bind(), source);
             uniforms.set(program);
         };
-        gl.pass(Self::SHADERS.tiles[0], || {
+        gl.pass(shaders.tiles[0], || {
             self.tile_map.bind_part(tile_size);
             begin(&self.tiles);
             gl.draw_screen();
         });
-        gl.pass(Self::SHADERS.spans[0], || {
+        gl.pass(shaders.spans[0], || {
             self.span_map.bind_part(span_size);
             begin(&self.spans);
             self.spans.texture("tile_map", 2, self.tile_map.color(0).raw());
             gl.draw_screen();
         });
-        gl.pass(Self::SHADERS.march, || {
+        gl.pass(shaders.march, || {
             begin(&self.march);
             self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
             self.march.texture("span_map", 3, self.span_map.color(0).raw());
-            set(&self.march);
+            if let Some(Bloom { texture, strength }) = source.bloom.filter(|_| self.options.bloom) {
+                self.march.texture("bloom", 4, texture).set("bloom_strength", strength);
+            }
             draw_target(gl, target, self.outputs);
         });
         gl.end_synthesis();

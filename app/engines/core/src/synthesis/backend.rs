@@ -3,6 +3,7 @@
 
 use bytemuck::Pod;
 
+use super::error::ArgumentError;
 pub use super::error::{check_rectangle, check_size};
 use super::uniforms::{PoseUniforms, TILE, Uniforms};
 use crate::eyes::{MotionWarp, PoseWarp, Warp};
@@ -28,7 +29,7 @@ pub fn tiles([columns, rows]: [u32; 2]) -> [u32; 2] {
 /// Returns the sizes of the tile map and of the span map, for the sizes of source and target in pixels. The span map has
 /// the target's size in tiles, but with the source's rows between parallel eyes.
 pub fn map_sizes<W: WarpKind>([source, target]: [[u32; 2]; 2]) -> [[u32; 2]; 2] {
-    [tiles(source), tiles(if W::KIND == Kind::AnyView { target } else { [target[0], source[1]] })]
+    [tiles(source), tiles(W::searched(source, target))]
 }
 
 /// The uniform block of the passes.
@@ -38,23 +39,37 @@ pub trait UniformBlock: Pod {
     fn set(&self, program: &yoro_gl::Program);
 }
 
-/// The passes of a kind of warp.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Those of `Gather`.
-    Gather,
-    /// Those of `Gather`, with vectors for colours.
-    Motion,
-    /// Those of `AnyView`.
-    AnyView,
+/// One value for each kind of warp, such as its shaders.
+#[derive(Clone, Copy, Debug)]
+pub struct PerKind<T> {
+    /// For `Gather`.
+    pub gather: T,
+    /// For `Motion`: the passes of `Gather`, with vectors for colours.
+    pub motion: T,
+    /// For `AnyView`.
+    pub any_view: T,
 }
 
 /// A kind of warp, with what the pipelines need to draw its passes.
 pub trait WarpKind: Copy {
     /// The uniform block of the passes.
     type Uniforms: UniformBlock;
-    /// The passes that draw it.
-    const KIND: Kind;
+
+    /// Returns the value for this kind.
+    fn of<T>(values: &PerKind<T>) -> &T;
+
+    /// Returns the size in pixels of the image whose tiles have a span each, for the sizes of source and target.
+    fn searched(source: [u32; 2], target: [u32; 2]) -> [u32; 2] {
+        [target[0], source[1]]
+    }
+
+    /// Checks the number of components of the source's colour.
+    ///
+    /// # Errors
+    /// [`ArgumentError::TwoComponents`].
+    fn check_components(_components: u32) -> Result<(), ArgumentError> {
+        Ok(())
+    }
 
     /// Returns the width and height of the source and of the target in pixels.
     fn sizes(&self) -> [[u32; 2]; 2];
@@ -68,7 +83,10 @@ pub trait WarpKind: Copy {
 
 impl WarpKind for Warp {
     type Uniforms = Uniforms;
-    const KIND: Kind = Kind::Gather;
+
+    fn of<T>(values: &PerKind<T>) -> &T {
+        &values.gather
+    }
 
     fn sizes(&self) -> [[u32; 2]; 2] {
         [self.source_size, self.target_size]
@@ -85,7 +103,14 @@ impl WarpKind for Warp {
 
 impl WarpKind for MotionWarp {
     type Uniforms = Uniforms;
-    const KIND: Kind = Kind::Motion;
+
+    fn of<T>(values: &PerKind<T>) -> &T {
+        &values.motion
+    }
+
+    fn check_components(components: u32) -> Result<(), ArgumentError> {
+        if components < 3 { Err(ArgumentError::TwoComponents) } else { Ok(()) }
+    }
 
     fn sizes(&self) -> [[u32; 2]; 2] {
         self.warp.sizes()
@@ -102,7 +127,14 @@ impl WarpKind for MotionWarp {
 
 impl WarpKind for PoseWarp {
     type Uniforms = PoseUniforms;
-    const KIND: Kind = Kind::AnyView;
+
+    fn of<T>(values: &PerKind<T>) -> &T {
+        &values.any_view
+    }
+
+    fn searched(_source: [u32; 2], target: [u32; 2]) -> [u32; 2] {
+        target
+    }
 
     fn sizes(&self) -> [[u32; 2]; 2] {
         [self.source_size, self.target_size]

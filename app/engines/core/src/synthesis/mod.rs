@@ -1,14 +1,15 @@
-//! Takes the colour and depth of one eye, and draws the other eye: what all graphics interfaces share.
+//! Draws the other eye from the colour and depth of one eye: what all graphics interfaces share.
 //!
-//! `yoro::opengl`, `yoro::vulkan` and the crate `yoro-wgpu` each have three pipelines. Each consists of three fragment passes: tile bounds, tile spans, march.
+//! `yoro::opengl`, `yoro::vulkan` and the crate `yoro-wgpu` each have three pipelines, which consist of three fragment
+//! passes: the bounds of each tile of the source, the span of each tile of the target, and the march.
 //!
-//! | pipeline | from a source to | the march goes along |
+//! | pipeline | draws | the march follows |
 //! |---|---|---|
-//! | `Gather` | a parallel eye, by a [`Warp`](crate::eyes::Warp) | the source's row |
-//! | `AnyView` | a view in any pose near it, by a [`PoseWarp`](crate::eyes::PoseWarp) | a segment of any direction |
-//! | `Motion` | a parallel eye, by a [`MotionWarp`](crate::eyes::MotionWarp): motion vectors instead of colour | the source's row |
+//! | `Gather` | a parallel eye, from a [`Warp`](crate::eyes::Warp) | the source's row |
+//! | `AnyView` | a view in any pose nearby, from a [`PoseWarp`](crate::eyes::PoseWarp) | a segment of any direction |
+//! | `Motion` | a parallel eye's motion vectors, from a [`MotionWarp`](crate::eyes::MotionWarp) | the source's row |
 //!
-//! A `Composer` makes an eye from the [levels](crate::eyes::StereoViews) of a foveated view, in one pass.
+//! A `Composer` combines the layers of [`StereoViews`](crate::eyes::StereoViews) into the eye that is shown, in one pass.
 
 pub mod backend;
 mod error;

@@ -1,16 +1,16 @@
 //! Synthesis on Vulkan: recorded into the caller's command buffer.
 //!
-//! [`Gather`] takes a [`Warp`] between parallel eyes, [`AnyView`] a
-//! [`PoseWarp`] to a view in any pose near the source's. [`Motion`] makes the other eye's motion vectors. All are a
-//! [`Pipeline`], and draw the same picture as on OpenGL, from the same shaders. A [`Composer`] makes an eye from the levels of a foveated view. [`Pipeline::new`], [`Pipeline::register_source`] and
-//! [`Pipeline::register_target`] allocate and compile everything; [`Pipeline::record`] only records: it allocates
-//! nothing, submits nothing and waits for nothing.
+//! [`Gather`] draws a parallel eye from a [`Warp`], and [`AnyView`] draws a view in any pose near the source's from a
+//! [`PoseWarp`]. [`Motion`] makes the other eye's motion vectors. Each is a [`Pipeline`], runs the shaders that OpenGL
+//! runs, and draws the same picture. A [`Composer`] combines the layers of a foveated view into the eye that is shown.
+//! [`Pipeline::new`], [`Pipeline::register_source`] and [`Pipeline::register_target`] allocate and compile everything,
+//! so that [`Pipeline::record`] only records: it allocates nothing, submits nothing and waits for nothing.
 //!
-//! Source and target images have Vulkan's own orientation, with row 0 at the top. Pass the [`Warp`]
-//! as [`EyePair::synthesis_views`](crate::eyes::EyePair::synthesis_views) returns it: its rows, counted from the
-//! bottom, are converted. [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in this
-//! orientation. [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is the
-//! corner of the dominant eye's own image in it.
+//! Source and target images have Vulkan's own orientation, with row 0 at the top. Pass the [`Warp`] as
+//! [`EyePair::synthesis_views`](crate::eyes::EyePair::synthesis_views) returns it, with rows counted from the bottom;
+//! recording converts them. [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in this
+//! orientation, and [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is
+//! the corner of the dominant eye's own image in it.
 //!
 //! ```no_run
 //! use yoro::eyes::SynthesisViews;

@@ -20,8 +20,7 @@ use super::{
     VulkanError,
 };
 use crate::eyes::{MotionWarp, PoseWarp, Warp};
-use crate::synthesis::ArgumentError;
-use crate::synthesis::backend::{Kind, Places, WarpKind, check_rectangle, check_size, map_sizes};
+use crate::synthesis::backend::{Places, WarpKind, check_rectangle, check_size, map_sizes};
 
 /// Synthesis between parallel eyes: the march goes along the source's row.
 pub type Gather = Pipeline<Warp>;
@@ -116,9 +115,7 @@ impl<W: WarpKind> Pipeline<W> {
     /// released or the pipeline is dropped.
     pub unsafe fn register_source(&mut self, images: &SourceImages) -> Result<SourceId, VulkanError> {
         images::check_source(&self.adapter, images)?;
-        if W::KIND == Kind::Motion && components(images.color.format) < 3 {
-            return Err(ArgumentError::TwoComponents.into());
-        }
+        W::check_components(components(images.color.format))?;
         // SAFETY: the caller's images are live, and outlive the objects, which are destroyed when the id is released.
         let objects = unsafe { Objects::new(&self.device) };
         let id = SourceId(self.next_id());

@@ -1,6 +1,6 @@
 //! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain spirv`.
 
-use crate::synthesis::backend::{Kind, WarpKind};
+use crate::synthesis::backend::{PerKind, WarpKind};
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
 pub(super) const COMPOSE: &[u8] = include_bytes!("spirv/compose.spv");
@@ -41,13 +41,11 @@ const ANY_VIEW: Shaders = Shaders {
     march_depth: include_bytes!("spirv/any-view-march-depth.spv"),
 };
 
+static SHADERS: PerKind<Shaders> = PerKind { gather: GATHER, motion: MOTION, any_view: ANY_VIEW };
+
 impl Shaders {
     pub(super) fn of<W: WarpKind>() -> &'static Shaders {
-        match W::KIND {
-            Kind::Gather => &GATHER,
-            Kind::Motion => &MOTION,
-            Kind::AnyView => &ANY_VIEW,
-        }
+        W::of(&SHADERS)
     }
 
     /// Returns the last pass.

@@ -4,6 +4,7 @@ use glam::{DVec2, Vec3};
 
 use super::laws::{on_every_backend, pair, scene};
 use super::posed::{MOTIONS, moved, run};
+use super::reference::{Color, filled, mix};
 use yoro::eyes::{DepthConvention, Eye, EyePair, GuardBand, PoseWarp, View};
 use yoro::opengl::{AnyView, GlError, Options, Outputs, Part};
 
@@ -14,7 +15,7 @@ fn views(size: [u32; 2], way: Vec3, turn: [f32; 3], convention: DepthConvention)
 }
 
 /// Marches in f64 over all samples of the segment. Returns the colour of a target pixel, and its stored depth.
-fn reference(rgba: &[u8], depth: &[f32], warp: &PoseWarp, pixel: DVec2) -> ([f64; 4], f64) {
+fn reference(rgba: &[u8], depth: &[f32], warp: &PoseWarp, pixel: DVec2) -> (Color, f64) {
     let size = warp.source_size.map(|n| n as usize);
     let [c, m] = warp.source_law;
     let ray = warp.homography * pixel.extend(1.0);
@@ -45,11 +46,10 @@ fn reference(rgba: &[u8], depth: &[f32], warp: &PoseWarp, pixel: DVec2) -> ([f64
             (low + f64::from(t >= 0.5), if t >= 0.5 { next } else { here })
         }
     };
-    let color = |i: f64, j: f64| -> [f64; 4] {
+    let color = |i: f64, j: f64| -> Color {
         let (low, high, t) = (index(i, j.floor()), index(i, j.ceil()), j.fract());
         std::array::from_fn(|c| f64::from(rgba[low * 4 + c]) * (1.0 - t) + f64::from(rgba[high * 4 + c]) * t)
     };
-    let mix = |a: [f64; 4], b: [f64; 4], t: f64| std::array::from_fn(|c| a[c] + t * (b[c] - a[c]));
     let first = (sense * (sense * far_at[long] - whole[long].abs()).floor()).clamp(0.0, last[0]);
     let end = (sense * ((sense * far_at[long]).floor() + 1.0)).clamp(0.0, last[0]);
     let mut here = (first, sample(first));
@@ -89,16 +89,11 @@ fn reference(rgba: &[u8], depth: &[f32], warp: &PoseWarp, pixel: DVec2) -> ([f64
     let (mut seen, mut seen_depth) = found.unwrap_or_else(|| {
         let (i, (j, d)) = edge.unwrap_or(here);
         let away = landing(i, d).abs();
-        let mut sum = color(i, j).map(|v| 2.0 * v);
-        let mut weights = 2.0;
-        for k in [-2.0, -1.0, 1.0, 2.0f64] {
-            let tap = (j.round() + (k * 0.5 * away.clamp(1.0, 12.0)).round_ties_even()).clamp(0.0, last[1]);
-            if away >= 0.5 && law * (f64::from(depth[index(i, tap)]) - d) <= 1.0 {
-                sum = std::array::from_fn(|c| sum[c] + color(i, tap)[c]);
-                weights += 1.0;
-            }
-        }
-        (sum.map(|v| v / weights), d)
+        let tap = |distance: f64| {
+            let tap = (j.round() + distance).clamp(0.0, last[1]);
+            (law * (f64::from(depth[index(i, tap)]) - d), color(i, tap))
+        };
+        (if away >= 0.5 { filled(color(i, j), away, tap) } else { color(i, j) }, d)
     });
     if let Some((i, (j, d))) = rim {
         let coverage = 1.0 - landing(i, d).abs();
@@ -159,7 +154,7 @@ fn the_same_view_is_the_identity() {
 }
 
 /// Returns a smoothly varying colour for a place in a view's image plane.
-fn smooth(at: DVec2) -> [f64; 4] {
+fn smooth(at: DVec2) -> Color {
     [at.x * 1.7, at.y * 1.3, (at.x * 0.11).sin() * 60.0 + (at.y * 0.07).cos() * 50.0 + 120.0, 255.0]
 }
 

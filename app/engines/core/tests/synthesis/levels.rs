@@ -142,12 +142,11 @@ fn the_fovea_loses_nothing() {
             let whole = eyes.synthesis_views(GuardBand::Distance(foveation.nearest)).unwrap();
             let (rgba, depth) = scene(whole.source.size, eyes.depth, seed as u64);
             let place = corner(&inset, &eyes.view(dominant), dominant.index());
-            let in_source = [0, 1]
-                .map(|i| whole.dominant_crop[i] as i32 + place[i] - own.dominant_crop[i] as i32);
+            let in_source =
+                [0, 1].map(|i| whole.dominant_crop[i] as i32 + place[i] - own.dominant_crop[i] as i32);
             let [width, size] = [whole.source.size[0], own.source.size[0]];
             assert!(in_source[0] >= 0 && in_source[0] as u32 + size <= width);
-            let part =
-                |channels: usize, all: &[u8]| cut(all, width, in_source, own.source.size, channels);
+            let part = |channels: usize, all: &[u8]| cut(all, width, in_source, own.source.size, channels);
             let depths = cut(&depth, width, in_source, own.source.size, 1);
             let run =
                 |rgba: &[u8], depth: &[f32], warp| super::subject().in_memory(gl).run(rgba, depth, warp);

@@ -5,10 +5,11 @@ use std::rc::Rc;
 use glow::HasContext;
 use rand::{Rng, SeedableRng};
 
-use super::laws::{on_every_backend, pair, scene};
+use super::laws::{on_every_backend, open_es_300, pair, scene};
 use super::state::snapshot;
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
 use yoro::opengl::{Context, Destination, Gather, GlState, Options, Outputs, Part, Source, buffer_bytes};
+use yoro_context::{Backend, Headless};
 use yoro_gl::{Filter, Format, RenderTarget};
 
 /// The corner of every source in its textures.
@@ -112,33 +113,38 @@ fn assert_equal(got: &(Vec<u8>, Vec<u32>), want: &(Vec<u8>, Vec<u32>), what: &st
     assert!(colors.max(columns) * 500 <= got.1.len(), "{what}: {colors} colours, {columns} columns differ");
 }
 
+/// Draws pictures from parts and layers, and compares them with those from textures of their own.
+fn draw_parts_and_layers(gl: &Rc<Context>) -> Vec<[(Vec<u8>, Vec<u32>); 3]> {
+    // A smaller picture after a larger one, and a mirrored one.
+    let cases = [([97, 31], Eye::Right), ([61, 20], Eye::Right), ([61, 20], Eye::Left)];
+    let pictures = cases.map(|(size, dominant)| Picture::new(size, dominant, 11));
+    let mut whole = Gather::new(gl, &Options::default(), OUTPUTS).unwrap();
+    let wanted = pictures.each_ref().map(|picture| {
+        let (_own, source) = Textures::new(gl, picture, false, false);
+        run(gl, &mut whole, source, &picture.warp)
+    });
+    let drawn = [(true, false), (false, true), (true, true)].map(|(parts, layers)| {
+        let options = Options { parts, array_textures: layers, ..Options::default() };
+        let mut gather = Gather::new(gl, &options, OUTPUTS).unwrap();
+        let drawn = pictures.each_ref().map(|picture| {
+            let (_part, source) = Textures::new(gl, picture, parts, layers);
+            run(gl, &mut gather, source, &picture.warp)
+        });
+        for ((got, want), picture) in drawn.iter().zip(&wanted).zip(&pictures) {
+            assert_equal(got, want, &format!("parts {parts}, layers {layers}, {:?}", picture.warp));
+        }
+        drawn
+    });
+    drawn.into()
+}
+
 #[test]
 fn parts_and_layers_give_the_same_picture() {
-    on_every_backend(|gl| {
-        // A smaller picture after a larger one, and a mirrored one.
-        let cases = [([97, 31], Eye::Right), ([61, 20], Eye::Right), ([61, 20], Eye::Left)];
-        let pictures = cases.map(|(size, dominant)| Picture::new(size, dominant, 11));
-        let mut whole = Gather::new(gl, &Options::default(), OUTPUTS).unwrap();
-        let wanted = pictures.each_ref().map(|picture| {
-            let (_own, source) = Textures::new(gl, picture, false, false);
-            run(gl, &mut whole, source, &picture.warp)
-        });
-        for (parts, layers) in [(true, false), (false, true), (true, true)] {
-            let options = Options { parts, array_textures: layers, ..Options::default() };
-            let [written_out, built_in] = [&["WITHOUT_ES_310"][..], &[]].map(|macros| {
-                let mut gather = Gather::with_macros(gl, &options, OUTPUTS, macros).unwrap();
-                pictures.each_ref().map(|picture| {
-                    let (_part, source) = Textures::new(gl, picture, parts, layers);
-                    run(gl, &mut gather, source, &picture.warp)
-                })
-            });
-            let what = format!("parts {parts}, layers {layers}");
-            assert!(written_out == built_in, "{what}: the shaders of OpenGL ES 3.0 draw something else");
-            for ((got, want), picture) in built_in.iter().zip(&wanted).zip(&pictures) {
-                assert_equal(got, want, &format!("{what}, {:?}", picture.warp));
-            }
-        }
-    });
+    on_every_backend(|gl| drop(draw_parts_and_layers(gl)));
+    // One after the other, since each is the thread's current context.
+    let limited = draw_parts_and_layers(open_es_300().gl());
+    let whole = draw_parts_and_layers(Headless::open(Backend::Egl).unwrap().gl());
+    assert!(limited == whole, "the shaders of OpenGL ES 3.0 draw something else");
 }
 
 /// After the largest size, no frame allocates, whatever its size; and the memory is known beforehand.

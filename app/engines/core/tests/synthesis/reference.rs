@@ -1,18 +1,108 @@
-//! A plain f64 version of the pipeline, without tiles: what the shaders must compute, but not the colours of holes:
-//! `any_view.rs` has them.
+//! A plain f64 version of gather, without tiles, and the fill of holes that any view shares: what the shaders must
+//! compute.
 
-/// One target pixel: its source column in forward columns, and whether it is a hole.
+use yoro::eyes::{Eye, Warp};
+
+/// One target pixel, in forward columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
+    /// What the source map tells of the pixel.
     pub hole: bool,
     pub source: f64,
+    /// The column that is seen behind a silhouette.
+    column: f64,
+    /// For a hole, how many pixels its edge, which is at `column`, is away.
+    away: Option<f64>,
     /// A silhouette in front: its column, and the share of the pixel that it covers.
-    pub rim: Option<(usize, f64)>,
+    rim: Option<(usize, f64)>,
 }
 
 impl Entry {
-    fn new(hole: bool, source: f64) -> Entry {
-        Entry { hole, source, rim: None }
+    fn new(column: f64, away: Option<f64>, rim: Option<(usize, f64)>) -> Entry {
+        let is_covered = rim.filter(|(_, coverage)| *coverage >= 0.5);
+        let source = is_covered.map_or(column, |(x, _)| x as f64);
+        Entry { hole: away.is_some() && is_covered.is_none(), source, column, away, rim }
+    }
+
+    /// True if the colour is a mean of several surfaces or samples.
+    pub fn is_blended(&self) -> bool {
+        self.away.is_some() || self.rim.is_some()
+    }
+
+    /// Returns the entry with the column that a shader has found, except where several columns make the colour.
+    pub fn at(self, source: f64) -> Entry {
+        if self.is_blended() { self } else { Entry { column: source, ..self } }
+    }
+}
+
+pub type Color = [f64; 4];
+
+pub fn mix(a: Color, b: Color, t: f64) -> Color {
+    std::array::from_fn(|c| a[c] + t * (b[c] - a[c]))
+}
+
+/// Returns the colour of a hole. `color` is that of its edge, which is `away` pixels from it. `tap` returns the sample
+/// at a distance beside the edge: how much nearer it is, in pixels of disparity, and its colour.
+pub fn filled(color: Color, away: f64, tap: impl Fn(f64) -> (f64, Color)) -> Color {
+    let spread = 0.5 * away.abs().clamp(1.0, 12.0);
+    let mut sum = color.map(|v| 2.0 * v);
+    let mut weights = 2.0;
+    for k in [-2.0, -1.0, 1.0, 2.0] {
+        let (nearer, color) = tap((k * spread).round_ties_even());
+        if nearer <= 1.0 {
+            sum = std::array::from_fn(|c| sum[c] + color[c]);
+            weights += 1.0;
+        }
+    }
+    sum.map(|v| v / weights)
+}
+
+/// A rendered eye, with rows from the bottom.
+pub struct Picture<'a> {
+    pub rgba: &'a [u8],
+    pub depth: &'a [f32],
+    pub warp: &'a Warp,
+}
+
+impl Picture<'_> {
+    /// Returns the index of a pixel by its forward column and its row. Beyond the borders these repeat.
+    fn pixel(&self, x: f64, row: f64) -> usize {
+        let last = self.warp.source_size.map(|n| f64::from(n) - 1.0);
+        let x = x.clamp(0.0, last[0]);
+        let column = if self.is_mirrored() { last[0] - x } else { x };
+        row.clamp(0.0, last[1]) as usize * self.warp.source_size[0] as usize + column as usize
+    }
+
+    fn is_mirrored(&self) -> bool {
+        self.warp.target_eye == Eye::Right
+    }
+
+    /// Returns how far a pixel moves, without the offset that all have.
+    fn displacement(&self, x: f64, row: f64) -> f64 {
+        let scale = if self.is_mirrored() { -self.warp.law.scale } else { self.warp.law.scale };
+        scale * f64::from(self.depth[self.pixel(x, row)])
+    }
+
+    fn color_at(&self, x: f64, row: f64) -> Color {
+        let texel = |x| self.rgba[self.pixel(x, row) * 4..][..4].iter().map(|v| f64::from(*v));
+        let [a, b] = [x.floor(), x.floor() + 1.0].map(|x| {
+            let mut channels = texel(x);
+            std::array::from_fn(|_| channels.next().unwrap())
+        });
+        mix(a, b, x - x.floor())
+    }
+
+    /// Returns the colour of an entry of a row, which may lie beyond the picture.
+    pub fn color(&self, entry: &Entry, row: f64) -> Color {
+        let mut seen = self.color_at(entry.column, row);
+        if let Some(away) = entry.away {
+            let edge = self.displacement(entry.column, row);
+            seen = filled(seen, away, |distance| {
+                let row = row + distance;
+                (self.displacement(entry.column, row) - edge, self.color_at(entry.column, row))
+            });
+        }
+        entry.rim.map_or(seen, |(x, coverage)| mix(seen, self.color_at(x as f64, row), coverage))
     }
 }
 
@@ -56,14 +146,11 @@ pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
                 }
             }
             let last = p.len() - 1;
-            let entry = match (hit, edge) {
-                (Some(source), _) => Entry::new(false, source),
-                (None, Some((_, x))) => Entry::new(true, x as f64),
-                (None, None) => Entry::new(!(p[last] <= target && target - p[last] < 0.5), last as f64),
-            };
-            match rim {
-                Some((x, coverage)) if coverage >= 0.5 => Entry { hole: false, source: x as f64, rim },
-                _ => Entry { rim, ..entry },
+            let away = |x: usize| (p[x] - target).abs();
+            match (hit, edge) {
+                (Some(column), _) => Entry::new(column, None, rim),
+                (None, Some((_, x))) => Entry::new(x as f64, Some(away(x)), rim),
+                (None, None) => Entry::new(last as f64, Some(away(last)).filter(|away| *away >= 0.5), rim),
             }
         })
         .collect()

@@ -4,11 +4,12 @@ use std::ffi::{CStr, c_void};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
 
+use yoro::synthesis::backend::WarpKind as _;
 use yoro::vulkan::ash::{self, vk};
 use yoro::vulkan::{Frame, Gather, Host, ImageState, Options, SourceImages, TargetImages, VulkanError};
 
 use super::harness::{Gpu, Image, Rendering, with_gpu};
-use super::{Setup, warps};
+use super::{Setup, options, warps};
 
 /// The device's own commands.
 static REAL: OnceLock<ash::Device> = OnceLock::new();
@@ -111,7 +112,7 @@ fn everything(gpu: &Gpu, host: &Host) -> Result<(), VulkanError> {
     let depth = gpu.image(vk::Format::D32_SFLOAT, warp.source_size, 1);
     let target = gpu.image(setup.target, warp.target_size, 1);
     let (before, after) = (ImageState::DISCARDED, ImageState::SAMPLED);
-    let options = Options { timed_frames: 1, ..setup.options(&[warp]) };
+    let options = Options { timed_frames: 1, ..options(&setup, warp.sizes()) };
     // SAFETY: the handles are valid, and all commands are executed before the pipeline is dropped.
     unsafe {
         let mut gather = Gather::new(host, &options)?;
@@ -205,7 +206,7 @@ fn a_format_that_the_device_lacks_is_refused() {
         let lacking = |role| VulkanError::Format { format: vk::Format::D24_UNORM_S8_UINT, role };
         // SAFETY: valid handles; nothing is made of the format that is refused.
         unsafe {
-            let options = setup.options(&[warp]);
+            let options = options(&setup, warp.sizes());
             let with_depth = Options { depth_format: Some(vk::Format::D24_UNORM_S8_UINT), ..options };
             assert_eq!(Gather::new(&host, &with_depth).err(), Some(lacking("a target's depth")));
             let mut gather = Gather::new(&host, &options).unwrap();

@@ -7,6 +7,7 @@ use yoro::vulkan::{
     ComposedFrame, Composer, ImageState, InsetImage, LevelImage, LevelImages, TargetImages, VulkanError,
 };
 use yoro_test_support::composed::{LevelPicture, cases};
+use yoro_test_support::table::cut;
 
 #[test]
 fn a_composed_eye_is_its_reference() {
@@ -65,7 +66,7 @@ fn a_composed_eye_is_its_reference() {
                     composer.release_target(to);
                 }
                 let all = target.read_rgba8(0, READ);
-                let got = crate::cut(&all, image_size, [7, 2], size, 4);
+                let got = cut(&all, image_size, [7, 2], size, 4);
                 case.check(&got, &format!("{rendering:?}"));
             }
         });

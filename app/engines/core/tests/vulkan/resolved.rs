@@ -1,8 +1,9 @@
 //! Depth that a render pass has resolved from samples is a source in the state in which the render pass leaves it.
 
-use crate::Setup;
 use crate::against_opengl::{Gl, assert_equal, picture, warps};
 use crate::harness::{Gpu, Image, READ, Rendering, WRITTEN, with_gpu};
+use crate::{Setup, options};
+use yoro::synthesis::backend::WarpKind as _;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{Frame, Gather, ImageState, SourceImages, TargetImages};
 
@@ -36,7 +37,7 @@ fn resolved_depth_is_taken() {
         // SAFETY: the images live until all commands have been executed, and are in the given states.
         unsafe {
             resolve(gpu, [&samples, &depth], wall, (front, rectangle));
-            let mut gather = Gather::new(&gpu.host(), &Setup::PLAIN.options(&[warp])).unwrap();
+            let mut gather = Gather::new(&gpu.host(), &options(&Setup::PLAIN, warp.sizes())).unwrap();
             let source = SourceImages::new(
                 color.layer(0, WRITTEN, ImageState::SAMPLED),
                 depth.layer(0, ImageState::RESOLVED_DEPTH, ImageState::SAMPLED),

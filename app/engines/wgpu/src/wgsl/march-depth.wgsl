@@ -1,4 +1,9 @@
 // Made of yoro's GLSL by `cargo xtask maintain wgsl`.
+struct Edge {
+    x: f32,
+    depth: f32,
+}
+
 struct Search {
     x: f32,
     depths: vec2<f32>,
@@ -136,35 +141,51 @@ fn column_at(x: ptr<function, f32>) -> f32 {
     return _e6.x;
 }
 
-fn fill_spread(away_1: ptr<function, f32>) -> f32 {
-    let _e4 = (*away_1);
-    return (0.5f * clamp(abs(_e4), 1f, 12f));
+fn tap_beside(edge: ptr<function, Edge>, distance_: ptr<function, f32>, nearer: ptr<function, f32>) -> vec4<f32> {
+    var place_2: vec2<f32>;
+    var param_3: f32;
+    var param_4: f32;
+    var param_5: vec2<f32>;
+    var param_6: vec2<f32>;
+
+    let _e11 = (*edge).x;
+    param_3 = _e11;
+    let _e12 = column_at((&param_3));
+    let _e13 = (*distance_);
+    param_4 = _e13;
+    let _e14 = row_at((&param_4));
+    place_2 = vec2<f32>(_e12, _e14);
+    let _e18 = synthesis.law[1u];
+    let _e19 = place_2;
+    param_5 = _e19;
+    let _e20 = depth_sample((&param_5));
+    let _e22 = (*edge).depth;
+    (*nearer) = (_e18 * (_e20 - _e22));
+    let _e25 = place_2;
+    param_6 = _e25;
+    let _e26 = color_sample((&param_6));
+    return _e26;
 }
 
-fn fill_hole(color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_1: ptr<function, f32>, depth: ptr<function, f32>) -> vec4<f32> {
+fn fill_hole(edge_1: ptr<function, Edge>, color: ptr<function, vec4<f32>>, away_1: ptr<function, f32>) -> vec4<f32> {
     var spread: f32;
-    var param_3: f32;
     var sum: vec4<f32>;
     var weights: f32;
     var i: i32;
-    var distance_: f32;
-    var below: vec2<f32>;
-    var param_4: f32;
-    var param_5: f32;
-    var above: vec2<f32>;
-    var param_6: f32;
-    var param_7: f32;
-    var depths: vec2<f32>;
-    var param_8: vec2<f32>;
-    var param_9: vec2<f32>;
+    var distance_1: f32;
+    var below: vec4<f32>;
+    var nearer_1: vec2<f32>;
+    var param_7: Edge;
+    var param_8: f32;
+    var param_9: f32;
+    var above: vec4<f32>;
+    var param_10: Edge;
+    var param_11: f32;
+    var param_12: f32;
     var weight: vec2<f32>;
-    var param_10: vec2<f32>;
-    var param_11: vec2<f32>;
 
-    let _e30 = (*away_2);
-    param_3 = _e30;
-    let _e31 = fill_spread((&param_3));
-    spread = _e31;
+    let _e28 = (*away_1);
+    spread = (0.5f * clamp(abs(_e28), 1f, 12f));
     let _e32 = (*color);
     sum = (_e32 * 2f);
     weights = 2f;
@@ -174,107 +195,96 @@ fn fill_hole(color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_1: p
         if (_e34 <= 2i) {
             let _e36 = i;
             let _e38 = spread;
-            distance_ = round((f32(_e36) * _e38));
-            let _e41 = (*x_1);
-            param_4 = _e41;
-            let _e42 = column_at((&param_4));
-            let _e43 = distance_;
-            param_5 = -(_e43);
-            let _e45 = row_at((&param_5));
-            below = vec2<f32>(_e42, _e45);
-            let _e47 = (*x_1);
-            param_6 = _e47;
-            let _e48 = column_at((&param_6));
-            let _e49 = distance_;
-            param_7 = _e49;
-            let _e50 = row_at((&param_7));
-            above = vec2<f32>(_e48, _e50);
-            let _e52 = below;
-            param_8 = _e52;
-            let _e53 = depth_sample((&param_8));
-            let _e54 = above;
-            param_9 = _e54;
-            let _e55 = depth_sample((&param_9));
-            depths = vec2<f32>(_e53, _e55);
-            let _e59 = synthesis.law[1u];
-            let _e60 = depths;
-            let _e61 = (*depth);
-            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e60 - vec2(_e61)) * _e59) <= vec2<f32>(1f, 1f)));
-            let _e68 = weight[0u];
-            let _e69 = below;
-            param_10 = _e69;
-            let _e70 = color_sample((&param_10));
-            let _e73 = weight[1u];
-            let _e74 = above;
-            param_11 = _e74;
-            let _e75 = color_sample((&param_11));
-            let _e78 = sum;
-            sum = (_e78 + ((_e70 * _e68) + (_e75 * _e73)));
-            let _e81 = weight[0u];
-            let _e83 = weight[1u];
-            let _e85 = weights;
-            weights = (_e85 + (_e81 + _e83));
+            distance_1 = round((f32(_e36) * _e38));
+            let _e41 = distance_1;
+            let _e43 = (*edge_1);
+            param_7 = _e43;
+            param_8 = -(_e41);
+            let _e44 = tap_beside((&param_7), (&param_8), (&param_9));
+            let _e45 = param_9;
+            nearer_1[0u] = _e45;
+            below = _e44;
+            let _e47 = (*edge_1);
+            param_10 = _e47;
+            let _e48 = distance_1;
+            param_11 = _e48;
+            let _e49 = tap_beside((&param_10), (&param_11), (&param_12));
+            let _e50 = param_12;
+            nearer_1[1u] = _e50;
+            above = _e49;
+            let _e52 = nearer_1;
+            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (_e52 <= vec2<f32>(1f, 1f)));
+            let _e56 = weight[0u];
+            let _e57 = below;
+            let _e60 = weight[1u];
+            let _e61 = above;
+            let _e64 = sum;
+            sum = (_e64 + ((_e57 * _e56) + (_e61 * _e60)));
+            let _e67 = weight[0u];
+            let _e69 = weight[1u];
+            let _e71 = weights;
+            weights = (_e71 + (_e67 + _e69));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e87 = i;
-            i = (_e87 + 1i);
+            let _e73 = i;
+            i = (_e73 + 1i);
         }
     }
-    let _e89 = sum;
-    let _e90 = weights;
-    return (_e89 / vec4(_e90));
+    let _e75 = sum;
+    let _e76 = weights;
+    return (_e75 / vec4(_e76));
 }
 
-fn depth_gather(place_2: ptr<function, vec2<f32>>) -> vec4<f32> {
+fn depth_gather(place_3: ptr<function, vec2<f32>>) -> vec4<f32> {
     var quad: vec4<f32>;
 
-    let _e4 = (*place_2);
+    let _e4 = (*place_3);
     let _e5 = textureGather(0, depth_map_texture, nearest_sampler, _e4);
     quad = _e5;
     let _e6 = quad;
     return _e6;
 }
 
-fn depth_pair(x_2: ptr<function, f32>) -> vec2<f32> {
+fn depth_pair(x_1: ptr<function, f32>) -> vec2<f32> {
     var row: f32;
-    var param_12: f32;
     var param_13: f32;
-    var param_14: vec2<f32>;
-    var param_15: f32;
-    var param_16: vec2<f32>;
+    var param_14: f32;
+    var param_15: vec2<f32>;
+    var param_16: f32;
+    var param_17: vec2<f32>;
     var quad_1: vec4<f32>;
-    var param_17: f32;
-    var param_18: vec2<f32>;
+    var param_18: f32;
+    var param_19: vec2<f32>;
     var local_2: vec2<f32>;
 
     if true {
-        param_12 = 0f;
-        let _e19 = row_at((&param_12));
+        param_13 = 0f;
+        let _e19 = row_at((&param_13));
         row = _e19;
-        let _e20 = (*x_2);
-        param_13 = _e20;
-        let _e21 = column_at((&param_13));
+        let _e20 = (*x_1);
+        param_14 = _e20;
+        let _e21 = column_at((&param_14));
         let _e22 = row;
-        param_14 = vec2<f32>(_e21, _e22);
-        let _e24 = depth_sample((&param_14));
-        let _e25 = (*x_2);
-        param_15 = (_e25 + 1f);
-        let _e27 = column_at((&param_15));
+        param_15 = vec2<f32>(_e21, _e22);
+        let _e24 = depth_sample((&param_15));
+        let _e25 = (*x_1);
+        param_16 = (_e25 + 1f);
+        let _e27 = column_at((&param_16));
         let _e28 = row;
-        param_16 = vec2<f32>(_e27, _e28);
-        let _e30 = depth_sample((&param_16));
+        param_17 = vec2<f32>(_e27, _e28);
+        let _e30 = depth_sample((&param_17));
         return vec2<f32>(_e24, _e30);
     }
     let _e34 = synthesis.columns[0u];
-    let _e35 = (*x_2);
+    let _e35 = (*x_1);
     let _e40 = synthesis.columns[1u];
-    param_17 = 0.25f;
-    let _e42 = row_at((&param_17));
-    param_18 = vec2<f32>(((_e34 * (_e35 + 1.25f)) + _e40), _e42);
-    let _e44 = depth_gather((&param_18));
+    param_18 = 0.25f;
+    let _e42 = row_at((&param_18));
+    param_19 = vec2<f32>(((_e34 * (_e35 + 1.25f)) + _e40), _e42);
+    let _e44 = depth_gather((&param_19));
     quad_1 = _e44;
     let _e46 = synthesis.mirrored;
     if (_e46 != 0u) {
@@ -288,26 +298,26 @@ fn depth_pair(x_2: ptr<function, f32>) -> vec2<f32> {
     return _e52;
 }
 
-fn search_at(x_3: ptr<function, f32>, origin: ptr<function, f32>) -> Search {
-    var depths_1: vec2<f32>;
-    var param_19: f32;
+fn search_at(x_2: ptr<function, f32>, origin: ptr<function, f32>) -> Search {
+    var depths: vec2<f32>;
+    var param_20: f32;
     var shift: f32;
 
-    let _e9 = (*x_3);
-    param_19 = _e9;
-    let _e10 = depth_pair((&param_19));
-    depths_1 = _e10;
-    let _e11 = (*x_3);
+    let _e9 = (*x_2);
+    param_20 = _e9;
+    let _e10 = depth_pair((&param_20));
+    depths = _e10;
+    let _e11 = (*x_2);
     let _e12 = (*origin);
     shift = (_e11 - _e12);
-    let _e14 = (*x_3);
-    let _e15 = depths_1;
+    let _e14 = (*x_2);
+    let _e15 = depths;
     let _e16 = shift;
     let _e19 = synthesis.law[1u];
-    let _e21 = depths_1[0u];
+    let _e21 = depths[0u];
     let _e24 = shift;
     let _e28 = synthesis.law[1u];
-    let _e30 = depths_1[1u];
+    let _e30 = depths[1u];
     return Search(_e14, _e15, (_e16 + (_e19 * _e21)), ((_e24 + 1f) + (_e28 * _e30)));
 }
 
@@ -316,15 +326,15 @@ fn lowest_bit(bits: ptr<function, u32>) -> f32 {
     return f32(firstTrailingBit(_e1));
 }
 
-fn segment_end(x_4: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: ptr<function, bool>, shift_1: ptr<function, u32>) -> f32 {
+fn segment_end(x_3: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: ptr<function, bool>, shift_1: ptr<function, u32>) -> f32 {
     var column: u32;
     var within: u32;
     var tile: vec4<u32>;
     var marks: u32;
     var local_3: u32;
-    var param_20: u32;
+    var param_21: u32;
 
-    let _e19 = (*x_4);
+    let _e19 = (*x_3);
     column = u32(_e19);
     let _e21 = column;
     within = (_e21 % 16u);
@@ -347,11 +357,11 @@ fn segment_end(x_4: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: p
     let _e41 = tile[2u];
     let _e44 = marks;
     marks = select(0u, _e44, (_e41 == bitcast<u32>(9f)));
-    let _e46 = (*x_4);
+    let _e46 = (*x_3);
     let _e47 = marks;
     let _e48 = within;
-    param_20 = (_e47 | (65536u >> bitcast<u32>(_e48)));
-    let _e52 = lowest_bit((&param_20));
+    param_21 = (_e47 | (65536u >> bitcast<u32>(_e48)));
+    let _e52 = lowest_bit((&param_21));
     return (_e46 + _e52);
 }
 
@@ -365,11 +375,11 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     var farther: bool;
     var local_7: f32;
     var local_8: f32;
-    var phi_588_: bool;
-    var phi_589_: bool;
-    var phi_590_: bool;
-    var phi_637_: bool;
-    var phi_670_: bool;
+    var phi_595_: bool;
+    var phi_596_: bool;
+    var phi_597_: bool;
+    var phi_644_: bool;
+    var phi_677_: bool;
 
     let _e19 = (*at_1).b;
     jump = (_e19 > 0f);
@@ -378,25 +388,25 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     torn = ((_e22 - _e24) >= 2f);
     let _e28 = (*beside).rim;
     let _e29 = (_e28 < 0f);
-    phi_590_ = _e29;
+    phi_597_ = _e29;
     if _e29 {
         let _e30 = jump;
         let _e31 = !(_e30);
-        phi_589_ = _e31;
+        phi_596_ = _e31;
         if !(_e31) {
             let _e33 = torn;
-            phi_588_ = _e33;
+            phi_595_ = _e33;
             if _e33 {
                 let _e35 = (*at_1).b;
-                phi_588_ = (_e35 < 1f);
+                phi_595_ = (_e35 < 1f);
             }
-            let _e38 = phi_588_;
-            phi_589_ = _e38;
+            let _e38 = phi_595_;
+            phi_596_ = _e38;
         }
-        let _e40 = phi_589_;
-        phi_590_ = _e40;
+        let _e40 = phi_596_;
+        phi_597_ = _e40;
     }
-    let _e42 = phi_590_;
+    let _e42 = phi_597_;
     rim = _e42;
     let _e43 = rim;
     if _e43 {
@@ -428,14 +438,14 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e64 = local_5;
     (*beside).rim_depth = _e64;
     let _e66 = jump;
-    phi_637_ = _e66;
+    phi_644_ = _e66;
     if _e66 {
         let _e69 = synthesis.law[1u];
         let _e72 = (*at_1).depths[0u];
         let _e74 = (*beside).edge_depth;
-        phi_637_ = ((_e69 * (_e72 - _e74)) < 0f);
+        phi_644_ = ((_e69 * (_e72 - _e74)) < 0f);
     }
-    let _e79 = phi_637_;
+    let _e79 = phi_644_;
     farther = _e79;
     let _e80 = farther;
     if _e80 {
@@ -458,36 +468,36 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e93 = local_8;
     (*beside).edge_depth = _e93;
     let _e95 = jump;
-    phi_670_ = _e95;
+    phi_677_ = _e95;
     if _e95 {
         let _e97 = (*at_1).a;
         let _e99 = torn;
-        phi_670_ = ((_e97 > -0.5f) || !(_e99));
+        phi_677_ = ((_e97 > -0.5f) || !(_e99));
     }
-    let _e103 = phi_670_;
+    let _e103 = phi_677_;
     return _e103;
 }
 
 fn is_event(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
-    var phi_501_: bool;
-    var phi_502_: bool;
+    var phi_508_: bool;
+    var phi_509_: bool;
 
     let _e4 = (*a);
     let _e5 = (_e4 <= 0f);
-    phi_502_ = _e5;
+    phi_509_ = _e5;
     if _e5 {
         let _e6 = (*b);
         let _e7 = (_e6 > 0f);
-        phi_501_ = _e7;
+        phi_508_ = _e7;
         if !(_e7) {
             let _e9 = (*b);
             let _e11 = (*a);
-            phi_501_ = (max(_e9, -1f) < _e11);
+            phi_508_ = (max(_e9, -1f) < _e11);
         }
-        let _e14 = phi_501_;
-        phi_502_ = _e14;
+        let _e14 = phi_508_;
+        phi_509_ = _e14;
     }
-    let _e16 = phi_502_;
+    let _e16 = phi_509_;
     return _e16;
 }
 
@@ -497,32 +507,32 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     var beside_1: Beside;
     var local_9: f32;
     var found: bool;
-    var param_21: f32;
     var param_22: f32;
-    var param_23: Beside;
-    var param_24: Search;
-    var x_5: f32;
+    var param_23: f32;
+    var param_24: Beside;
+    var param_25: Search;
+    var x_4: f32;
     var a_1: f32;
     var tile_row_1: i32;
     var below_2: bool;
     var shift_2: u32;
     var crosses: bool;
-    var param_25: f32;
-    var param_26: i32;
-    var param_27: bool;
-    var param_28: u32;
-    var param_29: f32;
+    var param_26: f32;
+    var param_27: i32;
+    var param_28: bool;
+    var param_29: u32;
     var param_30: f32;
     var param_31: f32;
     var param_32: f32;
-    var param_33: Beside;
-    var param_34: Search;
+    var param_33: f32;
+    var param_34: Beside;
+    var param_35: Search;
     var local_10: f32;
     var local_11: f32;
     var last: f32;
     var b_1: f32;
-    var param_35: f32;
     var param_36: f32;
+    var param_37: f32;
     var behind: bool;
     var local_12: f32;
     var local_13: f32;
@@ -533,383 +543,370 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     var t: f32;
     var local_17: f32;
     var local_18: f32;
-    var away_3: f32;
+    var away_2: f32;
     var color_1: vec4<f32>;
-    var param_37: f32;
     var param_38: f32;
-    var param_39: vec2<f32>;
-    var param_40: vec4<f32>;
-    var param_41: f32;
-    var param_42: f32;
+    var param_39: f32;
+    var param_40: vec2<f32>;
+    var param_41: Edge;
+    var param_42: vec4<f32>;
     var param_43: f32;
     var coverage: f32;
     var param_44: f32;
     var param_45: f32;
     var param_46: vec2<f32>;
-    var phi_719_: bool;
-    var phi_726_: bool;
-    var phi_736_: bool;
-    var phi_806_: bool;
-    var phi_817_: bool;
-    var phi_827_: bool;
-    var phi_901_: bool;
-    var phi_951_: bool;
-    var phi_974_: bool;
-    var phi_1025_: bool;
-    var phi_1041_: bool;
+    var phi_730_: bool;
+    var phi_740_: bool;
+    var phi_810_: bool;
+    var phi_820_: bool;
+    var phi_830_: bool;
+    var phi_903_: bool;
+    var phi_953_: bool;
+    var phi_976_: bool;
+    var phi_1027_: bool;
 
-    let _e77 = (*at_2).a;
-    let _e79 = (*at_2).x;
-    border = (_e77 - _e79);
-    let _e82 = (*at_2).x;
-    let _e84 = border;
-    outside = ((_e82 <= 0f) && (_e84 > 0f));
-    let _e87 = outside;
-    let _e88 = border;
-    let _e91 = (*end);
-    (*end) = select(_e91, 0f, (_e87 && (_e88 < 0.5f)));
-    let _e93 = outside;
-    beside_1.edge = select(-1f, 0f, _e93);
-    let _e96 = outside;
-    if _e96 {
-        let _e99 = (*at_2).depths[0u];
-        local_9 = _e99;
+    let _e75 = (*at_2).a;
+    let _e77 = (*at_2).x;
+    border = (_e75 - _e77);
+    let _e80 = (*at_2).x;
+    let _e82 = border;
+    outside = ((_e80 <= 0f) && (_e82 > 0f));
+    let _e85 = outside;
+    let _e86 = border;
+    let _e89 = (*end);
+    (*end) = select(_e89, 0f, (_e85 && (_e86 < 0.5f)));
+    let _e91 = outside;
+    beside_1.edge = select(-1f, 0f, _e91);
+    let _e94 = outside;
+    if _e94 {
+        let _e97 = (*at_2).depths[0u];
+        local_9 = _e97;
     } else {
-        let _e102 = synthesis.law[1u];
-        local_9 = select(1000000000f, -1000000000f, (_e102 < 0f));
+        let _e100 = synthesis.law[1u];
+        local_9 = select(1000000000f, -1000000000f, (_e100 < 0f));
     }
-    let _e105 = local_9;
-    beside_1.edge_depth = _e105;
+    let _e103 = local_9;
+    beside_1.edge_depth = _e103;
     beside_1.rim = -1f;
     beside_1.rim_depth = 0f;
     found = false;
-    phi_719_ = true;
-    if true {
-        let _e110 = (*at_2).x;
-        phi_719_ = (_e110 >= 0f);
+    let _e108 = (*at_2).x;
+    let _e109 = (_e108 >= 0f);
+    phi_730_ = _e109;
+    if _e109 {
+        let _e111 = (*at_2).x;
+        let _e112 = (*end);
+        phi_730_ = (_e111 < _e112);
     }
-    let _e113 = phi_719_;
-    phi_726_ = _e113;
-    if _e113 {
-        let _e115 = (*at_2).x;
-        let _e116 = (*end);
-        phi_726_ = (_e115 < _e116);
+    let _e115 = phi_730_;
+    phi_740_ = _e115;
+    if _e115 {
+        let _e117 = (*at_2).a;
+        param_22 = _e117;
+        let _e119 = (*at_2).b;
+        param_23 = _e119;
+        let _e120 = is_event((&param_22), (&param_23));
+        phi_740_ = _e120;
     }
-    let _e119 = phi_726_;
-    phi_736_ = _e119;
-    if _e119 {
-        let _e121 = (*at_2).a;
-        param_21 = _e121;
-        let _e123 = (*at_2).b;
-        param_22 = _e123;
-        let _e124 = is_event((&param_21), (&param_22));
-        phi_736_ = _e124;
+    let _e122 = phi_740_;
+    if _e122 {
+        let _e123 = beside_1;
+        param_24 = _e123;
+        let _e124 = (*at_2);
+        param_25 = _e124;
+        let _e125 = meet((&param_24), (&param_25));
+        let _e126 = param_24;
+        beside_1 = _e126;
+        found = _e125;
     }
-    let _e126 = phi_736_;
-    if _e126 {
-        let _e127 = beside_1;
-        param_23 = _e127;
-        let _e128 = (*at_2);
-        param_24 = _e128;
-        let _e129 = meet((&param_23), (&param_24));
-        let _e130 = param_23;
-        beside_1 = _e130;
-        found = _e129;
-    }
-    let _e132 = (*at_2).x;
-    x_5 = max((_e132 + 1f), 0f);
-    let _e136 = (*at_2).b;
-    let _e137 = x_5;
-    let _e139 = (*at_2).x;
-    a_1 = (_e136 + ((_e137 - _e139) - 1f));
-    let _e143 = (*row_1);
-    tile_row_1 = (_e143 / 8i);
-    let _e145 = (*row_1);
-    below_2 = ((_e145 & 4i) == 0i);
-    let _e148 = (*row_1);
-    shift_2 = (bitcast<u32>((_e148 & 2i)) << bitcast<u32>(3i));
+    let _e128 = (*at_2).x;
+    x_4 = max((_e128 + 1f), 0f);
+    let _e132 = (*at_2).b;
+    let _e133 = x_4;
+    let _e135 = (*at_2).x;
+    a_1 = (_e132 + ((_e133 - _e135) - 1f));
+    let _e139 = (*row_1);
+    tile_row_1 = (_e139 / 8i);
+    let _e141 = (*row_1);
+    below_2 = ((_e141 & 4i) == 0i);
+    let _e144 = (*row_1);
+    shift_2 = (bitcast<u32>((_e144 & 2i)) << bitcast<u32>(3i));
     crosses = false;
     loop {
-        let _e153 = x_5;
-        let _e154 = (*end);
-        let _e156 = found;
-        if ((_e153 <= _e154) && !(_e156)) {
-            let _e159 = x_5;
-            param_25 = _e159;
-            let _e160 = tile_row_1;
-            param_26 = _e160;
-            let _e161 = below_2;
-            param_27 = _e161;
-            let _e162 = shift_2;
-            param_28 = _e162;
-            let _e163 = segment_end((&param_25), (&param_26), (&param_27), (&param_28));
-            let _e164 = (*end);
-            param_29 = min(_e163, _e164);
-            let _e166 = (*origin_1);
-            param_30 = _e166;
-            let _e167 = search_at((&param_29), (&param_30));
-            (*at_2) = _e167;
-            let _e168 = a_1;
-            let _e169 = (_e168 <= 0f);
-            phi_806_ = _e169;
-            if _e169 {
-                let _e171 = (*at_2).a;
-                phi_806_ = (_e171 > 0f);
+        let _e149 = x_4;
+        let _e150 = (*end);
+        let _e152 = found;
+        if ((_e149 <= _e150) && !(_e152)) {
+            let _e155 = x_4;
+            param_26 = _e155;
+            let _e156 = tile_row_1;
+            param_27 = _e156;
+            let _e157 = below_2;
+            param_28 = _e157;
+            let _e158 = shift_2;
+            param_29 = _e158;
+            let _e159 = segment_end((&param_26), (&param_27), (&param_28), (&param_29));
+            let _e160 = (*end);
+            param_30 = min(_e159, _e160);
+            let _e162 = (*origin_1);
+            param_31 = _e162;
+            let _e163 = search_at((&param_30), (&param_31));
+            (*at_2) = _e163;
+            let _e164 = a_1;
+            let _e165 = (_e164 <= 0f);
+            phi_810_ = _e165;
+            if _e165 {
+                let _e167 = (*at_2).a;
+                phi_810_ = (_e167 > 0f);
             }
-            let _e174 = phi_806_;
-            crosses = _e174;
-            let _e175 = crosses;
-            found = _e175;
-            let _e176 = crosses;
-            let _e178 = (true && !(_e176));
-            phi_817_ = _e178;
-            if _e178 {
-                let _e180 = (*at_2).x;
-                let _e181 = (*end);
-                phi_817_ = (_e180 < _e181);
+            let _e170 = phi_810_;
+            crosses = _e170;
+            let _e171 = crosses;
+            found = _e171;
+            let _e172 = crosses;
+            let _e173 = !(_e172);
+            phi_820_ = _e173;
+            if _e173 {
+                let _e175 = (*at_2).x;
+                let _e176 = (*end);
+                phi_820_ = (_e175 < _e176);
             }
-            let _e184 = phi_817_;
-            phi_827_ = _e184;
-            if _e184 {
-                let _e186 = (*at_2).a;
-                param_31 = _e186;
-                let _e188 = (*at_2).b;
-                param_32 = _e188;
-                let _e189 = is_event((&param_31), (&param_32));
-                phi_827_ = _e189;
+            let _e179 = phi_820_;
+            phi_830_ = _e179;
+            if _e179 {
+                let _e181 = (*at_2).a;
+                param_32 = _e181;
+                let _e183 = (*at_2).b;
+                param_33 = _e183;
+                let _e184 = is_event((&param_32), (&param_33));
+                phi_830_ = _e184;
             }
-            let _e191 = phi_827_;
+            let _e186 = phi_830_;
+            if _e186 {
+                let _e187 = beside_1;
+                param_34 = _e187;
+                let _e188 = (*at_2);
+                param_35 = _e188;
+                let _e189 = meet((&param_34), (&param_35));
+                let _e190 = param_34;
+                beside_1 = _e190;
+                found = _e189;
+            }
+            let _e191 = found;
             if _e191 {
-                let _e192 = beside_1;
-                param_33 = _e192;
-                let _e193 = (*at_2);
-                param_34 = _e193;
-                let _e194 = meet((&param_33), (&param_34));
-                let _e195 = param_33;
-                beside_1 = _e195;
-                found = _e194;
-            }
-            let _e196 = found;
-            if _e196 {
-                let _e197 = x_5;
-                local_10 = _e197;
+                let _e192 = x_4;
+                local_10 = _e192;
             } else {
-                let _e199 = (*at_2).x;
-                local_10 = (_e199 + 1f);
+                let _e194 = (*at_2).x;
+                local_10 = (_e194 + 1f);
             }
-            let _e201 = local_10;
-            x_5 = _e201;
-            let _e202 = found;
-            if _e202 {
-                let _e203 = a_1;
-                local_11 = _e203;
+            let _e196 = local_10;
+            x_4 = _e196;
+            let _e197 = found;
+            if _e197 {
+                let _e198 = a_1;
+                local_11 = _e198;
             } else {
-                let _e205 = (*at_2).b;
-                local_11 = _e205;
+                let _e200 = (*at_2).b;
+                local_11 = _e200;
             }
-            let _e206 = local_11;
-            a_1 = _e206;
+            let _e201 = local_11;
+            a_1 = _e201;
             continue;
         } else {
             break;
         }
     }
-    let _e208 = (*at_2).x;
-    last = _e208;
-    let _e210 = (*at_2).a;
-    b_1 = _e210;
+    let _e203 = (*at_2).x;
+    last = _e203;
+    let _e205 = (*at_2).a;
+    b_1 = _e205;
     loop {
-        let _e211 = crosses;
-        let _e213 = x_5;
-        let _e214 = last;
-        if ((true && _e211) && (_e213 < _e214)) {
-            let _e217 = x_5;
-            let _e218 = last;
-            let _e219 = x_5;
-            let _e221 = a_1;
-            let _e223 = a_1;
-            let _e224 = b_1;
-            let _e229 = x_5;
-            let _e230 = last;
-            param_35 = clamp(floor((_e217 + (((_e218 - _e219) * _e221) / (_e223 - _e224)))), _e229, (_e230 - 1f));
-            let _e233 = (*origin_1);
-            param_36 = _e233;
-            let _e234 = search_at((&param_35), (&param_36));
-            (*at_2) = _e234;
-            let _e236 = (*at_2).a;
-            let _e237 = (_e236 > 0f);
-            phi_901_ = _e237;
-            if !(_e237) {
-                let _e240 = (*at_2).b;
-                phi_901_ = (_e240 <= 0f);
+        let _e206 = crosses;
+        let _e207 = x_4;
+        let _e208 = last;
+        if (_e206 && (_e207 < _e208)) {
+            let _e211 = x_4;
+            let _e212 = last;
+            let _e213 = x_4;
+            let _e215 = a_1;
+            let _e217 = a_1;
+            let _e218 = b_1;
+            let _e223 = x_4;
+            let _e224 = last;
+            param_36 = clamp(floor((_e211 + (((_e212 - _e213) * _e215) / (_e217 - _e218)))), _e223, (_e224 - 1f));
+            let _e227 = (*origin_1);
+            param_37 = _e227;
+            let _e228 = search_at((&param_36), (&param_37));
+            (*at_2) = _e228;
+            let _e230 = (*at_2).a;
+            let _e231 = (_e230 > 0f);
+            phi_903_ = _e231;
+            if !(_e231) {
+                let _e234 = (*at_2).b;
+                phi_903_ = (_e234 <= 0f);
             }
-            let _e243 = phi_901_;
-            crosses = _e243;
-            let _e245 = (*at_2).a;
-            behind = (_e245 > 0f);
+            let _e237 = phi_903_;
+            crosses = _e237;
+            let _e239 = (*at_2).a;
+            behind = (_e239 > 0f);
+            let _e241 = behind;
+            if _e241 {
+                let _e242 = x_4;
+                local_12 = _e242;
+            } else {
+                let _e244 = (*at_2).x;
+                local_12 = (_e244 + 1f);
+            }
+            let _e246 = local_12;
+            x_4 = _e246;
             let _e247 = behind;
             if _e247 {
-                let _e248 = x_5;
-                local_12 = _e248;
+                let _e248 = a_1;
+                local_13 = _e248;
             } else {
-                let _e250 = (*at_2).x;
-                local_12 = (_e250 + 1f);
+                let _e250 = (*at_2).b;
+                local_13 = _e250;
             }
-            let _e252 = local_12;
-            x_5 = _e252;
-            let _e253 = behind;
-            if _e253 {
-                let _e254 = a_1;
-                local_13 = _e254;
+            let _e251 = local_13;
+            a_1 = _e251;
+            let _e252 = behind;
+            if _e252 {
+                let _e254 = (*at_2).x;
+                local_14 = _e254;
             } else {
-                let _e256 = (*at_2).b;
-                local_13 = _e256;
+                let _e255 = last;
+                local_14 = _e255;
             }
-            let _e257 = local_13;
-            a_1 = _e257;
-            let _e258 = behind;
-            if _e258 {
-                let _e260 = (*at_2).x;
-                local_14 = _e260;
+            let _e256 = local_14;
+            last = _e256;
+            let _e257 = behind;
+            if _e257 {
+                let _e259 = (*at_2).a;
+                local_15 = _e259;
             } else {
-                let _e261 = last;
-                local_14 = _e261;
+                let _e260 = b_1;
+                local_15 = _e260;
             }
-            let _e262 = local_14;
-            last = _e262;
-            let _e263 = behind;
-            if _e263 {
-                let _e265 = (*at_2).a;
-                local_15 = _e265;
-            } else {
-                let _e266 = b_1;
-                local_15 = _e266;
-            }
-            let _e267 = local_15;
-            b_1 = _e267;
+            let _e261 = local_15;
+            b_1 = _e261;
             continue;
         } else {
             break;
         }
     }
-    let _e268 = found;
-    phi_951_ = _e268;
-    if !(_e268) {
-        let _e271 = beside_1.edge;
-        phi_951_ = (_e271 < 0f);
+    let _e262 = found;
+    phi_953_ = _e262;
+    if !(_e262) {
+        let _e265 = beside_1.edge;
+        phi_953_ = (_e265 < 0f);
     }
-    let _e274 = phi_951_;
-    own = _e274;
-    let _e275 = own;
-    if _e275 {
-        let _e277 = (*at_2).x;
-        let _e278 = (*end);
-        local_16 = min(_e277, _e278);
+    let _e268 = phi_953_;
+    own = _e268;
+    let _e269 = own;
+    if _e269 {
+        let _e271 = (*at_2).x;
+        let _e272 = (*end);
+        local_16 = min(_e271, _e272);
     } else {
-        let _e281 = beside_1.edge;
-        local_16 = _e281;
+        let _e275 = beside_1.edge;
+        local_16 = _e275;
     }
-    let _e282 = local_16;
-    x_5 = _e282;
-    let _e283 = found;
-    phi_974_ = _e283;
-    if _e283 {
-        let _e285 = (*at_2).b;
+    let _e276 = local_16;
+    x_4 = _e276;
+    let _e277 = found;
+    phi_976_ = _e277;
+    if _e277 {
+        let _e279 = (*at_2).b;
+        let _e281 = (*at_2).a;
+        phi_976_ = ((_e279 - _e281) < 2f);
+    }
+    let _e285 = phi_976_;
+    if _e285 {
         let _e287 = (*at_2).a;
-        phi_974_ = ((_e285 - _e287) < 2f);
-    }
-    let _e291 = phi_974_;
-    if _e291 {
-        let _e293 = (*at_2).a;
-        let _e296 = (*at_2).b;
-        let _e298 = (*at_2).a;
-        local_17 = (-(_e293) / (_e296 - _e298));
+        let _e290 = (*at_2).b;
+        let _e292 = (*at_2).a;
+        local_17 = (-(_e287) / (_e290 - _e292));
     } else {
         local_17 = 0f;
     }
-    let _e301 = local_17;
-    t = _e301;
-    let _e302 = x_5;
-    let _e303 = t;
-    (*surface).source = (_e302 + _e303);
-    let _e306 = own;
-    if _e306 {
-        let _e309 = (*at_2).depths[0u];
-        let _e312 = (*at_2).depths[1u];
-        let _e313 = t;
-        local_18 = mix(_e309, _e312, _e313);
+    let _e295 = local_17;
+    t = _e295;
+    let _e296 = x_4;
+    let _e297 = t;
+    (*surface).source = (_e296 + _e297);
+    let _e300 = own;
+    if _e300 {
+        let _e303 = (*at_2).depths[0u];
+        let _e306 = (*at_2).depths[1u];
+        let _e307 = t;
+        local_18 = mix(_e303, _e306, _e307);
     } else {
-        let _e316 = beside_1.edge_depth;
-        local_18 = _e316;
+        let _e310 = beside_1.edge_depth;
+        local_18 = _e310;
     }
-    let _e317 = local_18;
-    (*surface).depth = _e317;
-    let _e319 = x_5;
-    let _e320 = (*origin_1);
-    let _e324 = synthesis.law[1u];
-    let _e326 = (*surface).depth;
-    away_3 = ((_e319 - _e320) + (_e324 * _e326));
-    let _e329 = found;
-    let _e330 = !(_e329);
-    phi_1025_ = _e330;
-    if _e330 {
-        let _e331 = away_3;
-        phi_1025_ = (abs(_e331) >= 0.5f);
+    let _e311 = local_18;
+    (*surface).depth = _e311;
+    let _e313 = x_4;
+    let _e314 = (*origin_1);
+    let _e318 = synthesis.law[1u];
+    let _e320 = (*surface).depth;
+    away_2 = ((_e313 - _e314) + (_e318 * _e320));
+    let _e323 = found;
+    let _e324 = !(_e323);
+    phi_1027_ = _e324;
+    if _e324 {
+        let _e325 = away_2;
+        phi_1027_ = (abs(_e325) >= 0.5f);
     }
-    let _e335 = phi_1025_;
-    (*surface).hole = _e335;
-    let _e338 = (*surface).source;
-    param_37 = _e338;
-    let _e339 = column_at((&param_37));
-    param_38 = 0f;
-    let _e340 = row_at((&param_38));
-    param_39 = vec2<f32>(_e339, _e340);
-    let _e342 = color_sample((&param_39));
-    color_1 = _e342;
-    phi_1041_ = true;
-    if true {
-        let _e344 = (*surface).hole;
-        phi_1041_ = _e344;
+    let _e329 = phi_1027_;
+    (*surface).hole = _e329;
+    let _e332 = (*surface).source;
+    param_38 = _e332;
+    let _e333 = column_at((&param_38));
+    param_39 = 0f;
+    let _e334 = row_at((&param_39));
+    param_40 = vec2<f32>(_e333, _e334);
+    let _e336 = color_sample((&param_40));
+    color_1 = _e336;
+    let _e338 = (*surface).hole;
+    if _e338 {
+        let _e339 = x_4;
+        let _e341 = (*surface).depth;
+        param_41 = Edge(_e339, _e341);
+        let _e343 = color_1;
+        param_42 = _e343;
+        let _e344 = away_2;
+        param_43 = _e344;
+        let _e345 = fill_hole((&param_41), (&param_42), (&param_43));
+        color_1 = _e345;
     }
-    let _e346 = phi_1041_;
-    if _e346 {
-        let _e347 = color_1;
-        param_40 = _e347;
-        let _e348 = away_3;
-        param_41 = _e348;
-        let _e349 = x_5;
-        param_42 = _e349;
-        let _e351 = (*surface).depth;
-        param_43 = _e351;
-        let _e352 = fill_hole((&param_40), (&param_41), (&param_42), (&param_43));
-        color_1 = _e352;
-    }
-    let _e354 = beside_1.rim;
-    if (_e354 >= 0f) {
-        let _e357 = beside_1.rim;
-        let _e358 = (*origin_1);
-        let _e362 = synthesis.law[1u];
-        let _e364 = beside_1.rim_depth;
-        coverage = (1f - abs(((_e357 - _e358) + (_e362 * _e364))));
-        let _e369 = color_1;
-        let _e371 = beside_1.rim;
-        param_44 = _e371;
-        let _e372 = column_at((&param_44));
+    let _e347 = beside_1.rim;
+    if (_e347 >= 0f) {
+        let _e350 = beside_1.rim;
+        let _e351 = (*origin_1);
+        let _e355 = synthesis.law[1u];
+        let _e357 = beside_1.rim_depth;
+        coverage = (1f - abs(((_e350 - _e351) + (_e355 * _e357))));
+        let _e362 = color_1;
+        let _e364 = beside_1.rim;
+        param_44 = _e364;
+        let _e365 = column_at((&param_44));
         param_45 = 0f;
-        let _e373 = row_at((&param_45));
-        param_46 = vec2<f32>(_e372, _e373);
-        let _e375 = color_sample((&param_46));
-        let _e376 = coverage;
-        color_1 = mix(_e369, _e375, vec4(_e376));
-        let _e379 = coverage;
-        if (_e379 >= 0.5f) {
-            let _e382 = beside_1.rim;
-            let _e384 = beside_1.rim_depth;
-            (*surface) = Surface(_e382, _e384, false);
+        let _e366 = row_at((&param_45));
+        param_46 = vec2<f32>(_e365, _e366);
+        let _e368 = color_sample((&param_46));
+        let _e369 = coverage;
+        color_1 = mix(_e362, _e368, vec4(_e369));
+        let _e372 = coverage;
+        if (_e372 >= 0.5f) {
+            let _e375 = beside_1.rim;
+            let _e377 = beside_1.rim_depth;
+            (*surface) = Surface(_e375, _e377, false);
         }
     }
-    let _e386 = color_1;
-    return _e386;
+    let _e379 = color_1;
+    return _e379;
 }
 
 fn source_row() -> i32 {
@@ -961,140 +958,140 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     var param_58: f32;
     var param_59: i32;
     var param_60: Surface;
-    var phi_1242_: bool;
-    var phi_1251_: bool;
-    var phi_1334_: bool;
-    var phi_1347_: bool;
+    var phi_1241_: bool;
+    var phi_1250_: bool;
+    var phi_1333_: bool;
+    var phi_1346_: bool;
 
-    let _e40 = synthesis.origins[0u];
-    let _e42 = gl_FragCoord_1[0u];
-    let _e46 = synthesis.origins[1u];
-    origin_2 = ((_e40 * _e42) + _e46);
-    let _e48 = origin_2;
-    let _e50 = synthesis.farthest;
-    let _e52 = (*span_1);
-    param_47 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
-    let _e56 = origin_2;
-    param_48 = _e56;
-    let _e57 = search_at((&param_47), (&param_48));
-    at_3 = _e57;
-    let _e59 = at_3.x;
-    let _e61 = (*span_1);
-    param_49 = _e61;
-    let _e62 = span_steps((&param_49));
-    let _e66 = synthesis.source_size[0u];
-    end_1 = min((max(_e59, 0f) + _e62), f32((_e66 - 1i)));
-    let _e71 = at_3.x;
-    let _e73 = end_1;
-    limit = min((_e71 + 2f), _e73);
+    let _e39 = synthesis.origins[0u];
+    let _e41 = gl_FragCoord_1[0u];
+    let _e45 = synthesis.origins[1u];
+    origin_2 = ((_e39 * _e41) + _e45);
+    let _e47 = origin_2;
+    let _e49 = synthesis.farthest;
+    let _e51 = (*span_1);
+    param_47 = floor(((_e47 - _e49) - bitcast<f32>(_e51)));
+    let _e55 = origin_2;
+    param_48 = _e55;
+    let _e56 = search_at((&param_47), (&param_48));
+    at_3 = _e56;
+    let _e58 = at_3.x;
+    let _e60 = (*span_1);
+    param_49 = _e60;
+    let _e61 = span_steps((&param_49));
+    let _e65 = synthesis.source_size[0u];
+    end_1 = min((max(_e58, 0f) + _e61), f32((_e65 - 1i)));
+    let _e70 = at_3.x;
+    let _e72 = end_1;
+    limit = min((_e70 + 2f), _e72);
     loop {
-        let _e76 = at_3.x;
-        let _e77 = limit;
-        let _e78 = (_e76 < _e77);
-        phi_1242_ = _e78;
-        if _e78 {
-            let _e80 = at_3.b;
-            phi_1242_ = (_e80 <= 0f);
+        let _e75 = at_3.x;
+        let _e76 = limit;
+        let _e77 = (_e75 < _e76);
+        phi_1241_ = _e77;
+        if _e77 {
+            let _e79 = at_3.b;
+            phi_1241_ = (_e79 <= 0f);
         }
-        let _e83 = phi_1242_;
-        phi_1251_ = _e83;
-        if _e83 {
-            let _e85 = at_3.b;
-            let _e88 = at_3.a;
-            phi_1251_ = (max(_e85, -1f) >= _e88);
+        let _e82 = phi_1241_;
+        phi_1250_ = _e82;
+        if _e82 {
+            let _e84 = at_3.b;
+            let _e87 = at_3.a;
+            phi_1250_ = (max(_e84, -1f) >= _e87);
         }
-        let _e91 = phi_1251_;
-        if _e91 {
-            let _e93 = at_3.x;
-            param_50 = (_e93 + 2f);
-            let _e95 = column_at((&param_50));
+        let _e90 = phi_1250_;
+        if _e90 {
+            let _e92 = at_3.x;
+            param_50 = (_e92 + 2f);
+            let _e94 = column_at((&param_50));
             param_51 = 0f;
-            let _e96 = row_at((&param_51));
-            param_52 = vec2<f32>(_e95, _e96);
-            let _e98 = depth_sample((&param_52));
-            next = _e98;
-            let _e101 = at_3.depths[1u];
-            let _e102 = next;
-            at_3.depths = vec2<f32>(_e101, _e102);
-            let _e106 = at_3.b;
-            at_3.a = _e106;
-            let _e109 = at_3.x;
-            let _e111 = origin_2;
-            let _e115 = synthesis.law[1u];
-            let _e116 = next;
-            at_3.b = (((_e109 + 2f) - _e111) + (_e115 * _e116));
+            let _e95 = row_at((&param_51));
+            param_52 = vec2<f32>(_e94, _e95);
+            let _e97 = depth_sample((&param_52));
+            next = _e97;
+            let _e100 = at_3.depths[1u];
+            let _e101 = next;
+            at_3.depths = vec2<f32>(_e100, _e101);
+            let _e105 = at_3.b;
+            at_3.a = _e105;
+            let _e108 = at_3.x;
+            let _e110 = origin_2;
+            let _e114 = synthesis.law[1u];
+            let _e115 = next;
+            at_3.b = (((_e108 + 2f) - _e110) + (_e114 * _e115));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e121 = at_3.x;
-            at_3.x = (_e121 + 1f);
+            let _e120 = at_3.x;
+            at_3.x = (_e120 + 1f);
         }
     }
-    let _e125 = at_3.b;
-    let _e127 = at_3.a;
-    stretch = (_e125 - _e127);
-    let _e130 = at_3.a;
-    let _e132 = stretch;
-    t_1 = (-(_e130) / _e132);
-    let _e135 = at_3.x;
-    let _e136 = t_1;
-    let _e140 = at_3.depths[0u];
-    let _e143 = at_3.depths[1u];
-    let _e144 = t_1;
-    (*surface_1) = Surface((_e135 + _e136), mix(_e140, _e143, _e144), false);
-    let _e148 = (*surface_1).source;
-    param_53 = _e148;
-    let _e149 = column_at((&param_53));
+    let _e124 = at_3.b;
+    let _e126 = at_3.a;
+    stretch = (_e124 - _e126);
+    let _e129 = at_3.a;
+    let _e131 = stretch;
+    t_1 = (-(_e129) / _e131);
+    let _e134 = at_3.x;
+    let _e135 = t_1;
+    let _e139 = at_3.depths[0u];
+    let _e142 = at_3.depths[1u];
+    let _e143 = t_1;
+    (*surface_1) = Surface((_e134 + _e135), mix(_e139, _e142, _e143), false);
+    let _e147 = (*surface_1).source;
+    param_53 = _e147;
+    let _e148 = column_at((&param_53));
     param_54 = 0f;
-    let _e150 = row_at((&param_54));
-    param_55 = vec2<f32>(_e149, _e150);
-    let _e152 = color_sample((&param_55));
-    seen = _e152;
-    let _e155 = synthesis.source_size[0u];
-    middle = (0.5f * f32((_e155 - 1i)));
-    let _e160 = at_3.a;
-    let _e161 = (_e160 <= 0f);
-    phi_1334_ = _e161;
-    if _e161 {
-        let _e163 = at_3.b;
-        phi_1334_ = (_e163 > 0f);
+    let _e149 = row_at((&param_54));
+    param_55 = vec2<f32>(_e148, _e149);
+    let _e151 = color_sample((&param_55));
+    seen = _e151;
+    let _e154 = synthesis.source_size[0u];
+    middle = (0.5f * f32((_e154 - 1i)));
+    let _e159 = at_3.a;
+    let _e160 = (_e159 <= 0f);
+    phi_1333_ = _e160;
+    if _e160 {
+        let _e162 = at_3.b;
+        phi_1333_ = (_e162 > 0f);
     }
-    let _e166 = phi_1334_;
-    let _e167 = stretch;
-    let _e169 = (_e166 && (_e167 < 2f));
-    phi_1347_ = _e169;
-    if _e169 {
-        let _e171 = (*surface_1).source;
-        let _e172 = middle;
-        let _e175 = middle;
-        phi_1347_ = (abs((_e171 - _e172)) <= _e175);
+    let _e165 = phi_1333_;
+    let _e166 = stretch;
+    let _e168 = (_e165 && (_e166 < 2f));
+    phi_1346_ = _e168;
+    if _e168 {
+        let _e170 = (*surface_1).source;
+        let _e171 = middle;
+        let _e174 = middle;
+        phi_1346_ = (abs((_e170 - _e171)) <= _e174);
     }
-    let _e178 = phi_1347_;
-    done = _e178;
-    let _e179 = done;
-    if (true && !(_e179)) {
-        let _e182 = source_row();
-        let _e183 = at_3;
-        param_56 = _e183;
-        let _e184 = end_1;
-        param_57 = _e184;
-        let _e185 = origin_2;
-        param_58 = _e185;
-        param_59 = _e182;
-        let _e186 = march((&param_56), (&param_57), (&param_58), (&param_59), (&param_60));
-        let _e187 = param_60;
-        (*surface_1) = _e187;
-        seen = _e186;
+    let _e177 = phi_1346_;
+    done = _e177;
+    let _e178 = done;
+    if !(_e178) {
+        let _e180 = source_row();
+        let _e181 = at_3;
+        param_56 = _e181;
+        let _e182 = end_1;
+        param_57 = _e182;
+        let _e183 = origin_2;
+        param_58 = _e183;
+        param_59 = _e180;
+        let _e184 = march((&param_56), (&param_57), (&param_58), (&param_59), (&param_60));
+        let _e185 = param_60;
+        (*surface_1) = _e185;
+        seen = _e184;
     }
-    let _e188 = seen;
-    return _e188;
+    let _e186 = seen;
+    return _e186;
 }
 
 fn sample_planar(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
-    var place_3: f32;
-    var depths_2: vec2<f32>;
+    var place_4: f32;
+    var depths_1: vec2<f32>;
     var param_61: f32;
     var at_4: vec2<f32>;
     var param_62: f32;
@@ -1105,8 +1102,8 @@ fn sample_planar(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surf
     let _e22 = gl_FragCoord_1[0u];
     let _e26 = (*affine)[2u];
     let _e28 = gl_FragCoord_1[1u];
-    place_3 = ((_e18 + (_e20 * _e22)) + (_e26 * _e28));
-    let _e31 = place_3;
+    place_4 = ((_e18 + (_e20 * _e22)) + (_e26 * _e28));
+    let _e31 = place_4;
     let _e34 = synthesis.columns[1u];
     let _e38 = synthesis.columns[0u];
     let _e43 = synthesis.source_size[0u];
@@ -1122,14 +1119,14 @@ fn sample_planar(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surf
         let _e71 = (*surface_2).source;
         param_61 = floor(_e71);
         let _e73 = depth_pair((&param_61));
-        depths_2 = _e73;
-        let _e75 = depths_2[0u];
-        let _e77 = depths_2[1u];
+        depths_1 = _e73;
+        let _e75 = depths_1[0u];
+        let _e77 = depths_1[1u];
         let _e79 = (*surface_2).source;
         (*surface_2).depth = mix(_e75, _e77, fract(_e79));
     }
     (*surface_2).hole = false;
-    let _e84 = place_3;
+    let _e84 = place_4;
     param_62 = 0f;
     let _e85 = row_at((&param_62));
     at_4 = vec2<f32>(_e84, _e85);
@@ -1161,37 +1158,27 @@ fn main_1() {
     var param_65: Surface;
     var param_66: u32;
     var param_67: Surface;
-    var phi_1374_: bool;
 
-    let _e11 = pixel_span();
-    span_2 = _e11;
-    phi_1374_ = true;
-    if true {
-        let _e13 = span_2[1u];
-        phi_1374_ = (_e13 != 0u);
-    }
-    let _e16 = phi_1374_;
-    if _e16 {
-        let _e17 = span_2;
-        param_64 = bitcast<vec3<f32>>(_e17.xyz);
-        let _e20 = sample_planar((&param_64), (&param_65));
-        let _e21 = param_65;
-        surface_3 = _e21;
-        color_2 = _e20;
+    let _e10 = pixel_span();
+    span_2 = _e10;
+    let _e12 = span_2[1u];
+    if (_e12 != 0u) {
+        let _e14 = span_2;
+        param_64 = bitcast<vec3<f32>>(_e14.xyz);
+        let _e17 = sample_planar((&param_64), (&param_65));
+        let _e18 = param_65;
+        surface_3 = _e18;
+        color_2 = _e17;
     } else {
-        if true {
-            let _e23 = span_2[0u];
-            param_66 = _e23;
-            let _e24 = searched((&param_66), (&param_67));
-            let _e25 = param_67;
-            surface_3 = _e25;
-            color_2 = _e24;
-        } else {
-            discard;
-        }
+        let _e20 = span_2[0u];
+        param_66 = _e20;
+        let _e21 = searched((&param_66), (&param_67));
+        let _e22 = param_67;
+        surface_3 = _e22;
+        color_2 = _e21;
     }
-    let _e27 = surface_3.depth;
-    gl_FragDepth = _e27;
+    let _e24 = surface_3.depth;
+    gl_FragDepth = _e24;
     return;
 }
 

@@ -1,10 +1,10 @@
 //! The composer on wgpu: its f64 reference.
 
 use yoro_test_support::composed::{LevelPicture, cases};
+use yoro_test_support::table::cut;
 use yoro_wgpu::wgpu::{TextureAspect, TextureFormat};
 use yoro_wgpu::{Composer, InsetImage, LevelImage, LevelImages, Target};
 
-use crate::against_opengl::cut;
 use crate::harness::{depth_of, one_layer, with_gpus};
 
 #[test]

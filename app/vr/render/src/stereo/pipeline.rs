@@ -23,21 +23,6 @@ pub trait Synthesis {
     /// # Errors
     /// Those of [`Synthesis::prepare`].
     fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError>;
-
-    /// Like [`Synthesis::synthesize`], with bloom: a texture of the source's view, and its strength. Only for a pipeline
-    /// that was made with it.
-    ///
-    /// # Errors
-    /// Those of [`Synthesis::prepare`].
-    fn synthesize_with_bloom(
-        &mut self,
-        source: Source,
-        _bloom: (glow::Texture, f32),
-        warp: &Warp,
-        target: &Destination,
-    ) -> Result<(), GlError> {
-        self.synthesize(source, warp, target)
-    }
 }
 
 impl Synthesis for Gather {
@@ -47,18 +32,6 @@ impl Synthesis for Gather {
 
     fn synthesize(&mut self, source: Source, warp: &Warp, target: &Destination) -> Result<(), GlError> {
         Gather::synthesize(self, source, warp, target)
-    }
-
-    fn synthesize_with_bloom(
-        &mut self,
-        source: Source,
-        (bloom, strength): (glow::Texture, f32),
-        warp: &Warp,
-        target: &Destination,
-    ) -> Result<(), GlError> {
-        self.synthesize_with(source, warp, target, |march| {
-            march.texture("bloom", 4, bloom).set("bloom_strength", strength);
-        })
     }
 }
 

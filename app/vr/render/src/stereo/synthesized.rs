@@ -10,7 +10,7 @@ use super::over::{Over, OverlaySurfaces};
 use super::pipeline::Synthesis;
 use crate::view::{DepthResolve, GpuScene, Layout, Renderer, Selection, Targets};
 use yoro::eyes::{Eye, EyePair};
-use yoro::opengl::{Gather, GuessedDepth, Options, Outputs, Source};
+use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
 
 /// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects.
@@ -55,11 +55,8 @@ impl Synthesizers {
         let outputs = Outputs { depth, ..Outputs::default() };
         let synthesis: Box<dyn Synthesis> = match self.options.pipeline {
             Pipeline::Gather => {
-                let options = Options { depth_pairs: self.pairs, ..Options::default() };
-                let macros = &["BLOOM"][..usize::from(self.bloom)];
-                let hdr = (!self.gl.capabilities().float_render_targets).then_some("NO_FLOAT_TARGETS");
-                let macros: Vec<&'static str> = macros.iter().copied().chain(hdr).collect();
-                Box::new(Gather::with_macros(&self.gl, &options, outputs, &macros)?)
+                let options = Options { depth_pairs: self.pairs, bloom: self.bloom, ..Options::default() };
+                Box::new(Gather::new(&self.gl, &options, outputs)?)
             }
             Pipeline::Paper => self.options.create(&self.gl, outputs)?,
         };
@@ -143,13 +140,10 @@ impl StereoMethod for Synthesized {
         // The other eye first: both are finished in the same samples.
         let (to, has_depth) = over.begin(frame, other, &surfaces)?;
         let synthesis = synthesizers.get(has_depth)?;
-        match targets.bloom.as_ref().filter(|_| !is_developed) {
-            Some(bloom) => {
-                let bloom = (bloom.result().raw(), renderer.bloom_strength());
-                synthesis.synthesize_with_bloom(source, bloom, &views.warp, &to)?;
-            }
-            None => synthesis.synthesize(source, &views.warp, &to)?,
-        }
+        source.bloom = targets.bloom.as_ref().filter(|_| !is_developed).map(|bloom| {
+            Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() }
+        });
+        synthesis.synthesize(source, &views.warp, &to)?;
         over.finish(frame, other, &surfaces);
         // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
         frame.measure_depth(&targets.depth(views.source.size, Eye::Left, views.dominant_crop))?;

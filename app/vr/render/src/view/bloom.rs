@@ -41,8 +41,13 @@ impl BloomTargets {
     }
 }
 
+/// Returns the scale of scene-referred colour in textures, as in `include/hdr.glsl`.
+pub fn hdr_scale(gl: &Context) -> f32 {
+    if gl.capabilities().float_render_targets { 1.0 } else { 0.125 }
+}
+
 /// Returns the defines of `include/hdr.glsl`.
-pub fn hdr_defines(gl: &Context) -> Option<(&'static str, String)> {
+fn hdr_defines(gl: &Context) -> Option<(&'static str, String)> {
     (!gl.capabilities().float_render_targets).then(|| ("NO_FLOAT_TARGETS", String::new()))
 }
 

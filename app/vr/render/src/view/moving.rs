@@ -87,8 +87,8 @@ impl Moving {
 
     /// Binds the mesh, with the positions before the last step of the time, if it was one, at the location after those of
     /// vertices.
-    pub fn bind_with_former(&self) {
-        self.mesh.bind_with_former(self.has_moved);
+    pub fn bind_with_previous(&self) {
+        self.mesh.bind_with_previous(self.has_moved);
     }
 
     /// Returns the clusters that move.

@@ -7,7 +7,7 @@
 
 use std::rc::Rc;
 
-use super::bloom::{self, BloomPass, hdr_defines};
+use super::bloom::{self, BloomPass};
 use super::carry::CarryPass;
 use super::cluster::{Culler, Selection};
 use super::depth::{DepthImage, DepthResolve};
@@ -256,7 +256,7 @@ impl Renderer {
 
     /// Returns the factor on the bloom in the targets.
     pub(crate) fn bloom_strength(&self) -> f32 {
-        bloom::STRENGTH * self.settings.exposure
+        bloom::STRENGTH * self.settings.exposure / bloom::hdr_scale(&self.gl)
     }
 
     /// Compiles the programs for views of a layout, unless they are compiled already.
@@ -362,7 +362,6 @@ impl Renderer {
             let on = flags.into_iter().filter(|(_, on)| *on);
             let mut defines: Vec<_> = on.map(|(name, _)| (name, String::new())).collect();
             defines.extend((variant.carries > 0).then(|| ("CARRIED", variant.carries.to_string())));
-            defines.extend(hdr_defines(&self.gl));
             let program = Program::new(&self.gl, ShaderSource::Screen("render/develop.frag"), &defines)?;
             self.develop.push((variant, program));
         }

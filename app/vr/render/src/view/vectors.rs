@@ -75,7 +75,7 @@ impl VectorPass {
             self.target.bind();
             gl.clear(Some(view.depth.clear_value()));
             let culler = Culler::of_view(view);
-            moving.bind_with_former();
+            moving.bind_with_previous();
             for (material, _, clusters) in scene.opaque().filter(|(_, moves, _)| *moves) {
                 let features = material.features;
                 let program = match features.contains(Features::CUTOUT) {
@@ -89,8 +89,8 @@ impl VectorPass {
                     .set("eye", view.pose.position)
                     .set("eye_to_clip", eye_to_clip(view))
                     .set("to_vectors", eye_to_clip(now))
-                    .set("former_eye", then.pose.position)
-                    .set("former_to_vectors", eye_to_clip(then));
+                    .set("previous_eye", then.pose.position)
+                    .set("previous_to_vectors", eye_to_clip(then));
                 scene.set_material(program, material);
                 culler.visible(clusters).for_each(|range| moving.mesh.draw(range, 1));
             }
@@ -147,11 +147,11 @@ fn set_places(program: &Program, (depth, rendered): (&DepthImage, &View), step: 
         .set("depth_range", Vec4::new(first.x, first.y, last.x, last.y))
         .set("inverse_distance", Vec2::new(constant as f32, slope as f32))
         .set("to_place", Vec4::new(to_unit.x, to_unit.y, start.x, start.y))
-        .set("to_former", to_former(now, then));
+        .set("to_previous", to_previous(now, then));
 }
 
 /// Returns the matrix from normalized device coordinates x and y, 1, and inverse distance to the former frame's clip space.
-fn to_former(now: &View, then: &View) -> Mat4 {
+fn to_previous(now: &View, then: &View) -> Mat4 {
     let f = &now.frustum;
     // The ray through a place in the image, at distance 1.
     let rays = Mat4::from_cols(
