@@ -57,7 +57,7 @@ pub fn wait_frame(
     running(world, session)?;
     world.frames += 1;
     // An application whose frames have motion vectors renders every second one.
-    let periods = if world.session(session)?.frames.former.is_some() { 2 } else { 1 };
+    let periods = if world.session(session)?.frames.previous.is_some() { 2 } else { 1 };
     world.now_ns += periods * world.period_ns();
     let number = world.frame();
     world.happen(|at| matches!(at, At::Frame(n) if *n == number));

@@ -42,8 +42,8 @@ pub struct FrameCalls {
     pub ended: u32,
     /// The number of frames that were waited for.
     pub count: u32,
-    /// The last frame, if it had motion vectors.
-    pub former: Option<crate::synthesis::Former>,
+    /// The previous frame, if it had motion vectors.
+    pub previous: Option<crate::synthesis::MovingFrame>,
     /// The pose of the last frame's projection layer's space, in the space of the floor.
     pub space: Option<crate::space::Pose>,
 }

@@ -33,9 +33,9 @@ impl Swapchain {
         matches!(self.format, 0x81A5 | 0x81A6 | 0x8CAC | 0x88F0 | 0x8CAD | 124 | 126 | 129 | 130)
     }
 
-    /// True for signed numbers of 16 bits in the format of GL or of Vulkan.
+    /// True for GL_RGBA16F, the format of motion vectors.
     pub fn is_signed(&self) -> bool {
-        matches!(self.format, 0x881A | 97)
+        self.format == 0x881A
     }
 
     /// Returns the texture that is shown.

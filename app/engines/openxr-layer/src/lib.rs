@@ -16,12 +16,9 @@
 //! * `frame`: xrEndFrame.
 //! * `session`, `swapchain`, `instance`: one object each. `dispatch`: the functions of the next layer or the runtime.
 //! * `geometry`: the offered view, and how a submitted view is split. `mirror`: the same for flipped images.
-//! * `motion`: the vectors of both eyes, from those that the application chains to its view.
 //! * `sizes`: the offered view's size, remembered from one start to the next.
 //! * `binding`: the graphics interface of a session. `synthesizer`: the synthesis, implemented by `vulkan`, on the
 //!   application's device and queue, and by `gl`, in its context.
-//!
-//! The feature `capture` adds what tests need: pictures of what the runtime receives, and a world that stands still.
 
 mod binding;
 mod dispatch;
@@ -34,7 +31,6 @@ pub mod library;
 pub mod log;
 mod manifest;
 mod mirror;
-mod motion;
 mod objects;
 mod reason;
 mod session;
@@ -48,7 +44,7 @@ mod xdg;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use log::say;
+use log::log_line;
 
 pub use entry::xrNegotiateLoaderApiLayerInterface;
 pub use manifest::{DISABLE, ENABLE, Kind, MANIFEST, NAME, manifest};

@@ -271,8 +271,4 @@ impl Graphics for Gles {
         let number = |four: &[u8]| f32::from_ne_bytes([four[0], four[1], four[2], four[3]]);
         Some(bytes.chunks_exact(4).map(number).collect())
     }
-
-    fn rows_from_bottom(&self) -> bool {
-        true
-    }
 }

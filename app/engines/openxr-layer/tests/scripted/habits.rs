@@ -98,7 +98,7 @@ pub fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View)
         depth = Some((chains.depth_part(), habits.planes));
     }
     client.release(&chains.color)?;
-    Ok(Submitted { view, color: chains.part, depth, motion: None })
+    Ok(Submitted { view, color: chains.part, depth })
 }
 
 /// Begins a session, and creates its swapchains.

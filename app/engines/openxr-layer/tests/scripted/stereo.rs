@@ -155,7 +155,7 @@ fn shrink_replaces_the_tiny_view() {
                 let rendered = render(&mut client, &own, &habits, views[1].unwrap()).unwrap();
                 client.acquire(&tiny).unwrap();
                 client.release(&tiny).unwrap();
-                let unused = Submitted { view: views[0].unwrap(), color: part, depth: None, motion: None };
+                let unused = Submitted { view: views[0].unwrap(), color: part, depth: None };
                 client.end_frame(frame, &[Layer::Projection(vec![unused, rendered])]).unwrap();
             }
             client.destroy_session().unwrap();

@@ -91,9 +91,8 @@ pub fn settle() {
     });
 }
 
-/// The formats of a runtime on Vulkan: R8G8B8A8_SRGB, _UNORM, B8G8R8A8_SRGB, _UNORM, depth in 16, 32 and 32+8 bits, and
-/// R16G16B16A16_SFLOAT.
-const FORMATS: [i64; 8] = [43, 37, 50, 44, 124, 126, 130, 97];
+/// The formats of a runtime on Vulkan: R8G8B8A8_SRGB, _UNORM, B8G8R8A8_SRGB, _UNORM, depth in 16, 32 and 32+8 bits.
+const FORMATS: [i64; 7] = [43, 37, 50, 44, 124, 126, 130];
 
 /// Returns a headset on Vulkan, with the frusta of current headsets.
 pub fn script() -> Script {
@@ -189,18 +188,9 @@ impl Seen {
 
     /// Returns the last picture that the runtime received for an eye, with rows from the bottom.
     pub fn picture(&self, eye: usize) -> Vec<u8> {
-        self.png(&format!("view-{eye}"))
-    }
-
-    fn png(&self, name: &str) -> Vec<u8> {
-        let path = self.folder.path().join(format!("{name}.png"));
+        let path = self.folder.path().join(format!("view-{eye}.png"));
         let picture: RgbaImage = image::open(path).unwrap().into_rgba8();
         image::imageops::flip_vertical(&picture).into_raw()
-    }
-
-    /// Returns the last picture that the runtime made of an eye's motion vectors, with rows from the bottom.
-    pub fn between(&self, eye: usize) -> Vec<u8> {
-        self.png(&format!("between-{eye}"))
     }
 
     /// Returns the last depth that the runtime received for an eye, with rows from the bottom.
