@@ -195,8 +195,13 @@ fn frame_between(
     let synthesis = view.synthesis.as_ref()?;
     let rgba = read(world, &view.image)?;
     let Depth { image: depth, range, .. } = &synthesis.depth;
-    let vectors = read_numbers(world, &synthesis.vectors, false)?;
-    let depth = read_numbers(world, depth, true)?;
+    let texture = |world: &mut World, image: &Image| {
+        world.swapchain(sys::Swapchain::from_raw(image.swapchain)).ok()?.shown()
+    };
+    let (of_vectors, of_depth) = (texture(world, &synthesis.vectors)?, texture(world, depth)?);
+    let graphics = &mut world.its_session().ok()?.graphics;
+    let vectors = graphics.read_vectors(of_vectors, synthesis.vectors.layer, synthesis.vectors.rect)?;
+    let depth = graphics.read_depth(of_depth, depth.layer, depth.rect)?;
     // In OpenGL z is from -1 to 1, which XR_EXT_frame_synthesis forbids.
     let z = match () {
         () if synthesis.is_flat => 0.0,
@@ -204,9 +209,9 @@ fn frame_between(
         () => 1.0,
     };
     let (scale, offset) = (Vec3::from(synthesis.scale), Vec3::from(synthesis.offset));
-    let of_texel = |v: &[f32]| (Vec3::new(v[0], v[1], v[2]) * scale + offset) * Vec3::new(1.0, 1.0, z);
-    let vectors: Vec<Vec3> = vectors.chunks_exact(4).map(of_texel).collect();
-    let depth: Vec<f32> = depth.chunks_exact(4).map(|d| (d[0] - range[0]) / (range[1] - range[0])).collect();
+    let of_texel = |vector: Vec3| (vector * scale + offset) * Vec3::new(1.0, 1.0, z);
+    let vectors: Vec<Vec3> = vectors.into_iter().map(of_texel).collect();
+    let depth: Vec<f32> = depth.into_iter().map(|depth| (depth - range[0]) / (range[1] - range[0])).collect();
     let size = |image: &Image| [image.rect[2] as u32, image.rect[3] as u32];
     let moved = (Quat::from_array(synthesis.moved.1), Vec3::from(synthesis.moved.0));
     let eye = SubmittedEye {
@@ -225,12 +230,6 @@ fn frame_between(
 /// space in the previous one's. That is no motion of what is seen.
 fn in_this_space(moved: Pose, previous: &EyeCamera) -> EyeCamera {
     EyeCamera { pose: moved_by(inverse(moved), previous), ..*previous }
-}
-
-/// Returns four numbers for each pixel of a submitted image, beginning with the lowest row. Depth is the first of them.
-fn read_numbers(world: &mut World, image: &Image, is_depth: bool) -> Option<Vec<f32>> {
-    let texture = world.swapchain(sys::Swapchain::from_raw(image.swapchain)).ok()?.shown()?;
-    world.its_session().ok()?.graphics.read_numbers(texture, image.layer, image.rect, is_depth)
 }
 
 #[cfg(test)]
