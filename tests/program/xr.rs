@@ -180,7 +180,13 @@ fn assert_drawn(image: &RgbImage) {
 /// On a runtime that leaves another context current, and has functions without an instance only without one.
 #[test]
 fn a_session_from_beginning_to_end() {
-    let script = Script { poison: true, no_globals: true, unbind_context: true, pictures: pictures(), ..Script::default() };
+    let script = Script {
+        poison: true,
+        no_globals: true,
+        unbind_context: true,
+        pictures: pictures(),
+        ..Script::default()
+    };
     let simulated = Simulated::new(&script.asymmetric());
     let run = simulated.succeed("--method conventional,yoro --frames 3 --capture captured --json");
     let summary = run.json();
@@ -248,11 +254,12 @@ fn any_call_may_fail_once() {
         assert_no_crash(&run);
         simulated.check();
         assert_eq!(simulated.count(|entry| matches!(entry, Entry::Fault { .. })), 1, "{call}");
-        let told = failures(&run).into_iter().filter(|line| line.contains("failed with")).collect::<Vec<_>>();
+        let reported =
+            failures(&run).into_iter().filter(|line| line.contains("failed with")).collect::<Vec<_>>();
         // A failure to destroy an object has no consequence.
         let expected = if call.starts_with("xrDestroy") { 0 } else { 1 };
-        assert_eq!(told.len(), expected, "{call}: {}", run.stderr);
-        assert!(told.iter().all(|line| line.contains(call)), "{call}: {told:?}");
+        assert_eq!(reported.len(), expected, "{call}: {}", run.stderr);
+        assert!(reported.iter().all(|line| line.contains(call)), "{call}: {reported:?}");
     }
 
     // A call that fails for ever ends the program.
@@ -338,13 +345,14 @@ fn changes_of_state_pose_refresh_rate_and_ipd_are_followed_until_the_user_ends_i
         };
         let across: f32 = (0..3).map(|i| (views[1].position[i] - views[0].position[i]).powi(2)).sum();
         assert!((across.sqrt() - wanted).abs() < 1e-4, "frame {frame}: {views:?}");
-        assert!(![12, 13].contains(&frame), "nothing is shown from a pose that nobody knows");
+        assert!(![12, 13].contains(&frame), "nothing is shown from an unknown pose");
     }
 }
 
 #[test]
 fn controllers_switch_methods() {
-    let input = |frame, path: &str, value| Input { frame, path: format!("/user/hand/{path}"), value: [value, 0.0] };
+    let input =
+        |frame, path: &str, value| Input { frame, path: format!("/user/hand/{path}"), value: [value, 0.0] };
     let stick = [input(20, "left/input/thumbstick", -1.0), input(22, "left/input/thumbstick", 0.0)];
     let button = [input(10, "right/input/a/click", 1.0), input(12, "right/input/a/click", 0.0)];
     for (controller, inputs, expected) in [
@@ -479,7 +487,8 @@ fn canted_and_unequal_eyes_are_drawn_completely() {
         ),
     ];
     for (case, eyes) in cases {
-        let simulated = Simulated::new(&Script { eyes, poison: true, pictures: pictures(), ..Script::default() });
+        let simulated =
+            Simulated::new(&Script { eyes, poison: true, pictures: pictures(), ..Script::default() });
         let run = simulated.succeed("--frames 4");
         for view in 0..2 {
             assert_drawn(&simulated.picture(&format!("view-{view}.png")));
@@ -533,7 +542,8 @@ fn asymmetric(size: [u32; 2]) -> [ScriptEye; 2] {
 fn the_headset_shows_what_the_desktop_renders() {
     let script = Script { poison: true, eyes: asymmetric([512; 2]), ..Script::default() };
     let simulated = Simulated::new(&script);
-    let run = simulated.succeed("--method conventional,yoro --frames 1 --set foveation=off --capture captured --json");
+    let run = simulated
+        .succeed("--method conventional,yoro --frames 1 --set foveation=off --capture captured --json");
     let settings = Settings::resolve(None, CHEAP.map(str::to_owned)).unwrap();
     let all = captured(simulated.folder.path(), &run.json());
     for (method, pair, eyes) in &all {
@@ -552,7 +562,10 @@ fn the_headset_shows_what_the_desktop_renders() {
     let x = if second == Eye::Left { 0 } else { size - width };
     let outer = |image: &RgbImage| image::imageops::crop_imm(image, x, 0, width, height).to_image();
     let [whole, border] = [rgb(made, real), rgb(&outer(made), &outer(real))];
-    assert!(whole.ssim_gaussian > 0.97 && border.ssim_gaussian > 0.97, "{whole:?}, at the outer border {border:?}");
+    assert!(
+        whole.ssim_gaussian > 0.97 && border.ssim_gaussian > 0.97,
+        "{whole:?}, at the outer border {border:?}"
+    );
 }
 
 /// Returns a headset with insets of 20 degrees that follow the gaze.
@@ -564,8 +577,8 @@ fn with_insets(cant_degrees: f32) -> Script {
     script
 }
 
-/// With the extension and with OpenXR 1.1 alone, for parallel and for canted eyes. A headset's foveation is `medium`, if
-/// nobody says otherwise.
+/// With the extension and with OpenXR 1.1 alone, for parallel and for canted eyes. A headset's foveation is `medium`, unless the
+/// settings say otherwise.
 #[test]
 fn four_views_are_submitted_where_the_runtime_has_insets() {
     for (cant_degrees, missing, foveation) in
@@ -618,12 +631,8 @@ fn whole_eyes_are_submitted_if_the_settings_say_so() {
 /// Without insets of the runtime, each eye is composed of its levels before it is submitted.
 #[test]
 fn foveated_eyes_are_composed_for_runtimes_without_insets() {
-    let script = Script {
-        eyes: asymmetric([512; 2]),
-        poison: true,
-        pictures: pictures(),
-        ..Script::default()
-    };
+    let script =
+        Script { eyes: asymmetric([512; 2]), poison: true, pictures: pictures(), ..Script::default() };
     let [whole, foveated] = ["off", "medium"].map(|foveation| {
         let simulated = Simulated::new(&script);
         simulated.succeed(&format!("--frames 2 --set foveation={foveation}"));

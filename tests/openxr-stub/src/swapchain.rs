@@ -7,7 +7,6 @@ use sys::{Handle, Result as Code};
 
 use crate::graphics::Texture;
 use crate::instance::FOVEATION;
-use crate::log::Entry;
 use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden, found, in_chain};
 
 const IMAGES: usize = 3;
@@ -113,13 +112,6 @@ pub fn create_swapchain(
         format!("a structure of {FOVEATION}, which is not enabled"),
     )?;
     let handle = world.new_handle();
-    world.log.write(&Entry::Swapchain {
-        id: handle,
-        format: info.format,
-        width: info.width,
-        height: info.height,
-        layers: info.array_size,
-    });
     let swapchain = Swapchain {
         format: info.format,
         size,

@@ -241,7 +241,8 @@ mod tests {
     fn a_space_that_the_application_moves_does_not_move_the_head() {
         let moved = (Quat::from_rotation_y(0.4), Vec3::new(1.0, 0.0, -0.5));
         let head = (Quat::from_rotation_x(0.3), Vec3::new(0.2, 1.6, -0.1));
-        let camera = |pose| EyeCamera { pose, tangents: [-1.0, 1.0, -1.0, 1.0], inverse_distances: [10.0, 0.02] };
+        let camera =
+            |pose| EyeCamera { pose, tangents: [-1.0, 1.0, -1.0, 1.0], inverse_distances: [10.0, 0.02] };
         let now = camera(eye_pose(head));
         let same = in_this_space(moved, &camera(eye_pose(compose(moved, head))));
         assert!((same.pose.position - now.pose.position).length() < 1e-6, "{same:?}");

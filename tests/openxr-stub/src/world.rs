@@ -436,6 +436,9 @@ impl World {
     pub fn head_at(&self, time_ns: i64) -> (Quat, Vec3) {
         let seconds = self.moves_from_ns.map_or(0.0, |from| (time_ns - from).max(0) as f32 * 1e-9);
         let Script { position, velocity, yaw_degrees, .. } = &self.script;
-        (Quat::from_rotation_y(yaw_degrees.to_radians()), Vec3::from(*position) + Vec3::from(*velocity) * seconds)
+        (
+            Quat::from_rotation_y(yaw_degrees.to_radians()),
+            Vec3::from(*position) + Vec3::from(*velocity) * seconds,
+        )
     }
 }

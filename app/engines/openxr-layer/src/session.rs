@@ -170,7 +170,9 @@ impl Session {
         let inset = self.offer_for(ViewRole::Inset, &[left_inset, right_inset]);
         let failed = wide.err().or(inset.err());
         let of = |offer| failed.map_or(offer, Err);
-        self.remember(ViewRole::Wide, of(wide)).zip(self.remember(ViewRole::Inset, of(inset))).map(|(a, b)| [a, b])
+        self.remember(ViewRole::Wide, of(wide))
+            .zip(self.remember(ViewRole::Inset, of(inset)))
+            .map(|(a, b)| [a, b])
     }
 
     fn remember(&self, role: ViewRole, offer: Result<Offer, EyesError>) -> Option<(Pose, Frustum)> {

@@ -39,7 +39,7 @@ pub struct Settings {
     /// The width that is rendered beyond both eyes' views.
     #[serde(deserialize_with = "guard_band")]
     pub guard_band: GuardBand,
-    /// True if an application that begins in stereo is told that one eye's image is tiny.
+    /// True if one eye's image is recommended to be tiny to applications that begin in stereo, and replaced.
     #[serde(deserialize_with = "switch")]
     pub shrink: bool,
 }
@@ -295,7 +295,8 @@ mod tests {
         let hello = "/c/yoro/layer.toml, [application.hello]: unknown variant `mono`, \
                      expected one of `only`, `first`, `last`, `off` in `offer`; mend it or remove it";
         let others = [
-            "YORO_LAYER_DOMINANT: unknown variant `middle`, expected `left` or `right` in `dominant`".to_owned(),
+            "YORO_LAYER_DOMINANT: unknown variant `middle`, expected `left` or `right` in `dominant`"
+                .to_owned(),
             format!("YORO_LAYER_GUARD_BAND: \"auto\" is no guard band: {remedy} in `guard_band`"),
             "YORO_LAYER_SHRINK: unknown variant `1`, expected `on` or `off` in `shrink`".to_owned(),
         ];

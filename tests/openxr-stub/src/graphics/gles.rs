@@ -264,15 +264,20 @@ impl Graphics for Gles {
         Some(floats(&bytes).chunks_exact(4).map(Vec3::from_slice).collect())
     }
 
-    /// GL_NV_read_depth, which Mesa has, reads depth in its own type.
+    /// Uses GL_NV_read_depth, which Mesa has. It reads depth of floats as such, and any other as unsigned integers.
     fn read_depth(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<f32>> {
-        let bytes = self.with_layer(texture, layer, glow::DEPTH_ATTACHMENT, |gl| {
-            let pixels = read_pixels(gl, rect, glow::DEPTH_COMPONENT, glow::FLOAT, 4);
-            // SAFETY: a query.
-            let error = unsafe { gl.get_error() };
-            (error == glow::NO_ERROR).then_some(pixels)
-        })??;
-        Some(floats(&bytes))
+        self.with_layer(texture, layer, glow::DEPTH_ATTACHMENT, |gl| {
+            let read = |kind: u32| {
+                let bytes = read_pixels(gl, rect, glow::DEPTH_COMPONENT, kind, 4);
+                // SAFETY: a query.
+                (unsafe { gl.get_error() } == glow::NO_ERROR).then_some(bytes)
+            };
+            let part = |four: &[u8]| {
+                u32::from_ne_bytes([four[0], four[1], four[2], four[3]]) as f32 / u32::MAX as f32
+            };
+            let parts = |bytes: Vec<u8>| bytes.chunks_exact(4).map(part).collect();
+            read(glow::UNSIGNED_INT).map(parts).or_else(|| Some(floats(&read(glow::FLOAT)?)))
+        })?
     }
 }
 

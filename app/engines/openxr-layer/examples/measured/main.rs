@@ -248,7 +248,13 @@ impl Device {
             // The library stays loaded, because its functions are called until the process ends.
             std::mem::forget(entry);
             let physical_device = vk::PhysicalDevice::from_raw(binding.physical_device as u64);
-            Some(Device { instance, physical_device, device, queue_family: binding.queue_family_index, queue })
+            Some(Device {
+                instance,
+                physical_device,
+                device,
+                queue_family: binding.queue_family_index,
+                queue,
+            })
         }
     }
 }

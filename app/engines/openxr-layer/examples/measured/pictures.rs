@@ -73,7 +73,9 @@ impl Pictures {
     /// Nobody else uses the queue, and the image is in the layout of an attachment.
     pub unsafe fn release(&mut self, device: &Device, handle: sys::Swapchain) {
         let Some(swapchain) = self.swapchains.get_mut(&handle) else { return };
-        let Some(index) = swapchain.acquired.pop_front().filter(|_| self.frame == EARLIER_FRAMES) else { return };
+        let Some(index) = swapchain.acquired.pop_front().filter(|_| self.frame == EARLIER_FRAMES) else {
+            return;
+        };
         let places = match swapchain.format {
             vk::Format::R8G8B8A8_SRGB | vk::Format::R8G8B8A8_UNORM => [0, 1, 2],
             vk::Format::B8G8R8A8_SRGB | vk::Format::B8G8R8A8_UNORM => [2, 1, 0],

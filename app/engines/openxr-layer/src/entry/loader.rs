@@ -8,7 +8,7 @@ use super::{get_instance_proc_addr, sessions, without_panic};
 use crate::dispatch::{Dispatch, XrResult, check};
 use crate::instance::{Instance, text};
 use crate::settings::{OfferedAs, Settings};
-use crate::{log, objects, log_line};
+use crate::{log, log_line, objects};
 
 const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
 const GRAPHICS: [&CStr; 4] =

@@ -251,8 +251,7 @@ impl Frames {
     ) -> Result<Eyes, Reason> {
         let role = session.roles()[index];
         // SAFETY: same contract.
-        let synthesis =
-            unsafe { self.views[index].synthesize(session, role, swapchains, layer, view) }?;
+        let synthesis = unsafe { self.views[index].synthesize(session, role, swapchains, layer, view) }?;
         if let Some(time) = synthesis.gpu_time {
             // Both syntheses of four views count as one.
             self.statistics.gpu.sum += time;
@@ -265,7 +264,10 @@ impl Frames {
     fn log_fallback(&mut self, session: &Session, reason: Reason) {
         self.statistics.fallbacks += 1;
         if self.logged.insert(std::mem::discriminant(&reason)) {
-            log_line(format_args!("{}: the same image for both eyes: {reason}", session.instance.application));
+            log_line(format_args!(
+                "{}: the same image for both eyes: {reason}",
+                session.instance.application
+            ));
         }
     }
 

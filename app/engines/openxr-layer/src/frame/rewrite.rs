@@ -49,8 +49,7 @@ impl Rewritten {
         let parts = self.views.iter_mut().zip(&self.depths);
         for (projection, (views, depths)) in self.projections.iter_mut().zip(parts) {
             for (view, depth) in views.iter_mut().zip(depths) {
-                view.next =
-                    depth.as_ref().map_or(std::ptr::null(), |depth| std::ptr::from_ref(depth).cast());
+                view.next = depth.as_ref().map_or(std::ptr::null(), |depth| std::ptr::from_ref(depth).cast());
             }
             projection.views = views.as_ptr();
         }

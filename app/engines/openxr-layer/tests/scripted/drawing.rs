@@ -214,7 +214,8 @@ impl Drawing<'_> {
         match self {
             Drawing::Vulkan(_) => {
                 let ty = sys::SwapchainImageVulkanKHR::TYPE;
-                let mut images = [sys::SwapchainImageVulkanKHR { ty, next: ptr::null_mut(), image: 0 }; MAX_IMAGES];
+                let mut images =
+                    [sys::SwapchainImageVulkanKHR { ty, next: ptr::null_mut(), image: 0 }; MAX_IMAGES];
                 let result = ask(images.as_mut_ptr().cast(), &mut count);
                 (result, images[..count as usize].iter().map(|image| image.image).collect())
             }

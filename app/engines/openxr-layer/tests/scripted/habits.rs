@@ -162,9 +162,9 @@ pub fn with_session<'a>(
     client.destroy_session()
 }
 
-/// Runs at most `most` frames, until the session is over or lost.
-pub fn until_over(client: &mut Client, chains: &Chains, habits: &Habits, most: u32) -> Outcome<()> {
-    for _ in 0..most {
+/// Runs at most `limit` frames, until the session is over or lost.
+pub fn until_over(client: &mut Client, chains: &Chains, habits: &Habits, limit: u32) -> Outcome<()> {
+    for _ in 0..limit {
         client.poll()?;
         if client.over {
             break;

@@ -110,7 +110,7 @@ pub fn faulty(call: &str, nth: u32, result: openxr_sys::Result) -> Script {
 pub struct Seen {
     pub log: Vec<Entry>,
     /// The layer's log.
-    pub said: String,
+    pub layer_log: String,
     folder: TempDir,
 }
 
@@ -160,9 +160,9 @@ pub fn watched(mut script: Script, application: impl FnOnce()) -> Seen {
     yoro_openxr_stub::begin(script);
     let mut overheard = Overheard::begin();
     application();
-    let said = overheard.text();
+    let layer_log = overheard.text();
     drop(overheard);
-    Seen { log: log::read(&log), said, folder }
+    Seen { log: log::read(&log), layer_log, folder }
 }
 
 impl Seen {
@@ -217,7 +217,7 @@ impl Seen {
 
     /// Returns the layer's counts at the end of each session: synthesized views, and others.
     pub fn counts(&self) -> Vec<[u64; 2]> {
-        let ends = self.said.lines().filter_map(|line| {
+        let ends = self.layer_log.lines().filter_map(|line| {
             let (_, counts) = line.split_once("session ended after ")?.1.split_once(" frames: ")?;
             let (synthesized, rest) = counts.split_once(" synthesized, ")?;
             Some([synthesized.parse().ok()?, rest.strip_suffix(" not")?.parse().ok()?])
@@ -226,7 +226,7 @@ impl Seen {
     }
 
     /// Returns how often a text is in the layer's log.
-    pub fn said(&self, text: &str) -> usize {
-        self.said.matches(text).count()
+    pub fn count_in_log(&self, text: &str) -> usize {
+        self.layer_log.matches(text).count()
     }
 }
