@@ -119,7 +119,7 @@ fn status_tells_mistakes_in_the_settings_of_every_application() {
     fs::write(&file, "guard_band = 1.0\n[application.Hello]\noffer = 'off'\n").unwrap();
     assert_eq!(layer(folder, &["status"]).code, Some(0));
     fs::write(&file, "[application.Hello]\ndominant = 'middle'\n").unwrap();
-    layer(folder, &["status"]).refuses(&["layer.toml", "[application.Hello]", "left or right"]);
+    layer(folder, &["status"]).refuses(&["layer.toml", "[application.Hello]", "`left` or `right`"]);
     fs::remove_file(&file).unwrap();
     fs::create_dir(&file).unwrap();
     let status = layer(folder, &["status"]);

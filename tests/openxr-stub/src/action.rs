@@ -236,7 +236,6 @@ pub fn attach_action_sets(
         forbid_if(!actions.sets.contains_key(&set), Code::ERROR_HANDLE_INVALID, "not an action set")?;
         actions.attached.push(set);
     }
-    world.session(session)?.attached = true;
     // Runtimes find controllers only once they know the actions.
     world.current()?.events.push_back(crate::world::Event::Profile);
     DONE

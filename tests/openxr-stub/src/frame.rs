@@ -57,7 +57,7 @@ pub fn wait_frame(
     running(world, session)?;
     world.frames += 1;
     // An application whose frames have motion vectors renders every second one.
-    let periods = if world.session(session)?.frames.former.is_some() { 2 } else { 1 };
+    let periods = if world.session(session)?.frames.previous.is_some() { 2 } else { 1 };
     world.now_ns += periods * world.period_ns();
     let number = world.frame();
     world.happen(|at| matches!(at, At::Frame(n) if *n == number));
@@ -235,7 +235,7 @@ pub unsafe fn submitted(
             let quad = unsafe { &*layer.cast::<sys::CompositionLayerQuad>() };
             pose(&quad.pose)?;
             let image = submitted_image(world, &quad.sub_image, Content::Color)?;
-            Ok(Layer::Quad { image, size: [quad.size.width, quad.size.height] })
+            Ok(Layer::Quad { image })
         }
         other => Err(forbidden(Code::ERROR_LAYER_INVALID, format!("{other:?} is not offered"))),
     }
@@ -442,11 +442,10 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
                 let name = |(i, view)| (format!("view-{i}"), &(view as &View).image);
                 views.iter().enumerate().map(name).collect()
             }
-            Layer::Quad { image, .. } => {
+            Layer::Quad { image } => {
                 quads += 1;
                 vec![(format!("quad-{}", quads - 1), image)]
             }
-            Layer::Other { .. } => Vec::new(),
         };
         for (name, image) in images {
             let Some(pixels) = read(world, image) else {

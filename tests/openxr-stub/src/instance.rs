@@ -264,7 +264,7 @@ impl Instance {
 }
 
 /// Writes an event to the buffer, which has room for every kind of event.
-fn tell<T: Copy>(buffer: &mut sys::EventDataBuffer, event: T) -> Answer {
+fn write_event<T: Copy>(buffer: &mut sys::EventDataBuffer, event: T) -> Answer {
     const { assert!(size_of::<T>() <= size_of::<sys::EventDataBuffer>()) };
     // SAFETY: there is room, and events are plain data.
     unsafe { ptr::write((&raw mut *buffer).cast::<T>(), event) };
@@ -300,22 +300,18 @@ pub fn poll_event(world: &mut World, instance: sys::Instance, buffer: &mut sys::
     };
     match event {
         Event::State(state) => {
-            if let Some(session) = &mut known.session {
-                session.told = state;
-            }
-            world.log.write(&Entry::State { state });
             world.happen(|at| matches!(at, At::State(s) if *s == state));
             let ty = sys::EventDataSessionStateChanged::TYPE;
             let state = raw_state(state);
-            tell(buffer, sys::EventDataSessionStateChanged { ty, next, session, state, time: now })
+            write_event(buffer, sys::EventDataSessionStateChanged { ty, next, session, state, time: now })
         }
         Event::InstanceLoss => {
             let ty = sys::EventDataInstanceLossPending::TYPE;
-            tell(buffer, sys::EventDataInstanceLossPending { ty, next, loss_time: now })
+            write_event(buffer, sys::EventDataInstanceLossPending { ty, next, loss_time: now })
         }
         Event::ReferenceSpace(yaw) => {
             let turn = glam::Quat::from_rotation_y(yaw);
-            tell(
+            write_event(
                 buffer,
                 sys::EventDataReferenceSpaceChangePending {
                     ty: sys::EventDataReferenceSpaceChangePending::TYPE,
@@ -330,9 +326,9 @@ pub fn poll_event(world: &mut World, instance: sys::Instance, buffer: &mut sys::
         }
         Event::Profile => {
             let ty = sys::EventDataInteractionProfileChanged::TYPE;
-            tell(buffer, sys::EventDataInteractionProfileChanged { ty, next, session })
+            write_event(buffer, sys::EventDataInteractionProfileChanged { ty, next, session })
         }
-        Event::RefreshRate(from, to) => tell(
+        Event::RefreshRate(from, to) => write_event(
             buffer,
             sys::EventDataDisplayRefreshRateChangedFB {
                 ty: sys::EventDataDisplayRefreshRateChangedFB::TYPE,
@@ -341,7 +337,7 @@ pub fn poll_event(world: &mut World, instance: sys::Instance, buffer: &mut sys::
                 to_display_refresh_rate: to,
             },
         ),
-        Event::Mask => tell(
+        Event::Mask => write_event(
             buffer,
             sys::EventDataVisibilityMaskChangedKHR {
                 ty: sys::EventDataVisibilityMaskChangedKHR::TYPE,
@@ -356,7 +352,7 @@ pub fn poll_event(world: &mut World, instance: sys::Instance, buffer: &mut sys::
         ),
         Event::Lost => {
             let ty = sys::EventDataEventsLost::TYPE;
-            tell(buffer, sys::EventDataEventsLost { ty, next, lost_event_count: 1 })
+            write_event(buffer, sys::EventDataEventsLost { ty, next, lost_event_count: 1 })
         }
     }
 }

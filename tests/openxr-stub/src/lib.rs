@@ -12,7 +12,6 @@
 //! Tests that link it as a Rust library call [`begin`] with a script, as often as they like.
 
 mod action;
-pub mod between;
 mod extension;
 mod frame;
 mod graphics;

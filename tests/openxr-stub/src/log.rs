@@ -7,8 +7,6 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::script::State;
-
 /// One line of the log.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "kebab-case")]
@@ -20,10 +18,6 @@ pub enum Entry {
     Session { binding: String },
     /// A session has begun.
     Begun { views: u32 },
-    /// A swapchain was created.
-    Swapchain { id: u64, format: i64, width: u32, height: u32, layers: u32 },
-    /// The application received the event of a state.
-    State { state: State },
     /// A frame has ended.
     Frame { frame: u32, should_render: bool, layers: Vec<Layer> },
     /// The application requested something: a display rate, a performance level, the end of the session.
@@ -46,8 +40,7 @@ pub enum Entry {
 #[allow(missing_docs)]
 pub enum Layer {
     Projection { views: Vec<View> },
-    Quad { image: Image, size: [f32; 2] },
-    Other { structure: i32 },
+    Quad { image: Image },
 }
 
 /// A submitted view.
@@ -93,7 +86,7 @@ pub struct Synthesis {
 /// A part of a swapchain's image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Image {
-    /// The swapchain, as in [`Entry::Swapchain`].
+    /// The handle of the swapchain.
     pub swapchain: u64,
     /// The layer of the image's array.
     pub layer: u32,

@@ -40,8 +40,6 @@ pub struct Script {
     pub yaw_degrees: f32,
     /// The head's velocity in metres a second, from the first picture on.
     pub velocity: [f32; 3],
-    /// The head's rotation to the left in degrees a second, from the first picture on.
-    pub turn_degrees: f32,
     /// Frames without a valid head pose.
     pub untracked: Vec<u32>,
     /// Frames in which the views' quaternions have this length instead of 1, although the poses are reported as valid.
@@ -237,7 +235,6 @@ impl Default for Script {
             position: [0.0, 1.6, 0.0],
             yaw_degrees: 0.0,
             velocity: [0.0; 3],
-            turn_degrees: 0.0,
             untracked: Vec::new(),
             quaternion_lengths: Vec::new(),
             no_globals: false,

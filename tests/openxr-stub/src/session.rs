@@ -21,15 +21,12 @@ pub struct Session {
     /// The number of views of the session's configuration; 0 while it is not running.
     pub views: u32,
     pub state: State,
-    /// The state in the last event that the application received.
-    pub told: State,
     /// The highest state that the session may reach.
     pub level: State,
     /// The number of polls at which the session becomes `READY` again after its end, or `None` if it becomes `EXITING`.
     put_on_again_at: Option<u32>,
     exiting: bool,
     pub frames: FrameCalls,
-    pub attached: bool,
     pub graphics: Box<dyn Graphics>,
 }
 
@@ -42,8 +39,8 @@ pub struct FrameCalls {
     pub ended: u32,
     /// The number of frames that were waited for.
     pub count: u32,
-    /// The last frame, if it had motion vectors.
-    pub former: Option<crate::synthesis::Former>,
+    /// The previous frame, if it had motion vectors.
+    pub previous: Option<crate::synthesis::MovingFrame>,
     /// The pose of the last frame's projection layer's space, in the space of the floor.
     pub space: Option<crate::space::Pose>,
 }
@@ -65,10 +62,11 @@ impl Session {
     pub fn settle(&mut self, events: &mut VecDeque<Event>) {
         const LEVELS: [State; 4] = [State::Ready, State::Synchronized, State::Visible, State::Focused];
         let index = |state| LEVELS.iter().position(|level| *level == state);
-        let (true, Some(mut now), Some(most)) = (self.views > 0, index(self.state), index(self.level)) else {
+        let (true, Some(mut now), Some(highest)) = (self.views > 0, index(self.state), index(self.level))
+        else {
             return;
         };
-        let target = most.min(self.frames.ended as usize);
+        let target = highest.min(self.frames.ended as usize);
         while now != target {
             now = if now < target { now + 1 } else { now - 1 };
             self.go(LEVELS[now], events);
@@ -157,12 +155,10 @@ pub fn create_session(
         loss_pending: false,
         views: 0,
         state: State::Idle,
-        told: State::Idle,
         level: State::Focused,
         put_on_again_at: None,
         exiting: false,
         frames: FrameCalls::default(),
-        attached: false,
         graphics,
     };
     session.go(State::Idle, &mut known.events);

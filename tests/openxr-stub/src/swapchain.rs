@@ -7,7 +7,6 @@ use sys::{Handle, Result as Code};
 
 use crate::graphics::Texture;
 use crate::instance::FOVEATION;
-use crate::log::Entry;
 use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden, found, in_chain};
 
 const IMAGES: usize = 3;
@@ -33,9 +32,9 @@ impl Swapchain {
         matches!(self.format, 0x81A5 | 0x81A6 | 0x8CAC | 0x88F0 | 0x8CAD | 124 | 126 | 129 | 130)
     }
 
-    /// True for signed numbers of 16 bits in the format of GL or of Vulkan.
+    /// True for GL_RGBA16F, the format of motion vectors.
     pub fn is_signed(&self) -> bool {
-        matches!(self.format, 0x881A | 97)
+        self.format == 0x881A
     }
 
     /// Returns the texture that is shown.
@@ -113,13 +112,6 @@ pub fn create_swapchain(
         format!("a structure of {FOVEATION}, which is not enabled"),
     )?;
     let handle = world.new_handle();
-    world.log.write(&Entry::Swapchain {
-        id: handle,
-        format: info.format,
-        width: info.width,
-        height: info.height,
-        layers: info.array_size,
-    });
     let swapchain = Swapchain {
         format: info.format,
         size,

@@ -5,8 +5,8 @@ use std::ffi::c_void;
 use glam::{Quat, Vec3};
 use openxr_sys as sys;
 use sys::{Handle, Result as Code};
+use yoro_metrics::{EyeCamera, EyePose, SubmittedEye};
 
-use crate::between::{Before, View as Moving, between};
 use crate::frame::{Content, checked_depth, read, submitted_image};
 use crate::instance::{FRAME_SYNTHESIS, SPACE_WARP};
 use crate::log::{Depth, Image, Layer, Synthesis, View};
@@ -14,11 +14,11 @@ use crate::session::Frame;
 use crate::space::{Pose, compose, inverse, pose};
 use crate::world::{Refusal, World, forbid_if, forbidden, in_chain};
 
-/// The last frame, if it had motion vectors.
+/// A frame with motion vectors.
 #[derive(Clone, Debug)]
-pub struct Former {
+pub struct MovingFrame {
     time: sys::Time,
-    views: Vec<Before>,
+    views: Vec<EyeCamera>,
 }
 
 fn refuse<T>(what: impl Into<String>) -> Result<T, Refusal> {
@@ -135,23 +135,22 @@ pub fn synthesize(world: &mut World, layers: &[Layer], frame: Frame) -> Result<(
         Layer::Projection { views } if views.iter().all(|view| view.synthesis.is_some()) => Some(views),
         _ => None,
     });
-    let former = world.its_session()?.frames.former.take();
+    let previous = world.its_session()?.frames.previous.take();
     let Some(views) = views else { return Ok(()) };
-    let all: Vec<Before> = views.iter().filter_map(before).collect();
+    let cameras: Vec<EyeCamera> = views.iter().filter_map(camera).collect();
     let pictures = world.script.pictures.clone().filter(|pictures| pictures.from <= frame.number);
     let skips = views.iter().flat_map(|view| &view.synthesis).any(|synthesis| synthesis.is_skipped);
-    if let (Some(pictures), Some(former), false) = (pictures, former, skips)
-        && former.views.len() == views.len()
+    if let (Some(pictures), Some(previous), false) = (pictures, previous, skips)
+        && previous.views.len() == views.len()
     {
-        let interval = frame.time.as_nanos() - former.time.as_nanos();
+        let interval = frame.time.as_nanos() - previous.time.as_nanos();
         let (now, later) =
             (world.head_at(frame.time.as_nanos()), world.head_at(frame.time.as_nanos() + interval / 2));
         let space = world.its_session()?.frames.space.unwrap_or((Quat::IDENTITY, Vec3::ZERO));
         let head_moves = compose(later, inverse(now));
         let in_space = compose(inverse(space), compose(head_moves, space));
-        for (i, (view, was)) in views.iter().zip(&former.views).enumerate() {
-            let newest = compose(in_space, all[i].pose);
-            let Some(made) = frame_between(world, view, was, &all[i], newest) else {
+        for (i, (view, previous)) in views.iter().zip(&previous.views).enumerate() {
+            let Some(made) = frame_between(world, view, previous, &cameras[i], in_space) else {
                 return Err(forbidden(Code::ERROR_RUNTIME_FAILURE, "motion vectors cannot be read"));
             };
             let [.., width, height] = view.image.rect.map(|n| n as u32);
@@ -161,61 +160,92 @@ pub fn synthesize(world: &mut World, layers: &[Layer], frame: Frame) -> Result<(
             picture.save(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         }
     }
-    world.its_session()?.frames.former = Some(Former { time: frame.time, views: all });
+    world.its_session()?.frames.previous = Some(MovingFrame { time: frame.time, views: cameras });
     Ok(())
 }
 
-/// Returns what the next frame needs to know of a view.
-fn before(view: &View) -> Option<Before> {
-    Some(Before {
-        pose: (Quat::from_array(view.orientation), view.position.into()),
-        edges: view.fov_degrees.map(|angle| angle.to_radians().tan()),
-        near_far: view.synthesis.as_ref()?.depth.near_far,
+/// Returns the camera of a view with motion vectors.
+fn camera(view: &View) -> Option<EyeCamera> {
+    let [left, right, up, down] = view.fov_degrees.map(|angle| angle.to_radians().tan());
+    let near_far = view.synthesis.as_ref()?.depth.near_far;
+    Some(EyeCamera {
+        pose: eye_pose((Quat::from_array(view.orientation), view.position.into())),
+        tangents: [left, right, down, up],
+        inverse_distances: near_far.map(|metres| 1.0 / f64::from(metres)),
     })
 }
 
-/// Returns a view's picture half an interval later.
+fn eye_pose((orientation, position): Pose) -> EyePose {
+    EyePose { position, orientation }
+}
+
+/// Returns the pose of a camera that `motion` moves.
+fn moved_by(motion: Pose, camera: &EyeCamera) -> EyePose {
+    eye_pose(compose(motion, (camera.pose.orientation, camera.pose.position)))
+}
+
+/// Returns a view's picture half an interval later, in which the head moves by `head_motion`.
 fn frame_between(
     world: &mut World,
     view: &View,
-    was: &Before,
-    now: &Before,
-    newest: Pose,
+    previous: &EyeCamera,
+    camera: &EyeCamera,
+    head_motion: Pose,
 ) -> Option<Vec<u8>> {
     let synthesis = view.synthesis.as_ref()?;
     let rgba = read(world, &view.image)?;
-    let Depth { image: depth, range, near_far } = &synthesis.depth;
-    let vectors = read_numbers(world, &synthesis.vectors, false)?;
-    let depth = read_numbers(world, depth, true)?;
-    let is_gl = world.its_session().ok()?.graphics.rows_from_bottom();
-    // y of NDC grows with the rows of the image. In OpenGL z is from -1 to 1, which XR_EXT_frame_synthesis forbids.
-    let y = if is_gl { 1.0 } else { -1.0 };
+    let Depth { image: depth, range, .. } = &synthesis.depth;
+    let texture = |world: &mut World, image: &Image| {
+        world.swapchain(sys::Swapchain::from_raw(image.swapchain)).ok()?.shown()
+    };
+    let (of_vectors, of_depth) = (texture(world, &synthesis.vectors)?, texture(world, depth)?);
+    let graphics = &mut world.its_session().ok()?.graphics;
+    let vectors = graphics.read_vectors(of_vectors, synthesis.vectors.layer, synthesis.vectors.rect)?;
+    let depth = graphics.read_depth(of_depth, depth.layer, depth.rect)?;
+    // In OpenGL z is from -1 to 1, which XR_EXT_frame_synthesis forbids.
     let z = match () {
         () if synthesis.is_flat => 0.0,
-        () if is_gl && synthesis.is_space_warp => 0.5,
+        () if synthesis.is_space_warp => 0.5,
         () => 1.0,
     };
     let (scale, offset) = (Vec3::from(synthesis.scale), Vec3::from(synthesis.offset));
-    let of_texel = |v: &[f32]| (Vec3::new(v[0], v[1], v[2]) * scale + offset) * Vec3::new(1.0, y, z);
-    let vectors: Vec<Vec3> = vectors.chunks_exact(4).map(of_texel).collect();
-    let depth: Vec<f32> = depth.chunks_exact(4).map(|d| (d[0] - range[0]) / (range[1] - range[0])).collect();
-    let size = |image: &Image| [image.rect[2] as usize, image.rect[3] as usize];
-    let moving = Moving {
-        pose: now.pose,
-        edges: now.edges,
-        size: size(&view.image),
+    let of_texel = |vector: Vec3| (vector * scale + offset) * Vec3::new(1.0, 1.0, z);
+    let vectors: Vec<Vec3> = vectors.into_iter().map(of_texel).collect();
+    let depth: Vec<f32> = depth.into_iter().map(|depth| (depth - range[0]) / (range[1] - range[0])).collect();
+    let size = |image: &Image| [image.rect[2] as u32, image.rect[3] as u32];
+    let moved = (Quat::from_array(synthesis.moved.1), Vec3::from(synthesis.moved.0));
+    let eye = SubmittedEye {
         rgba: &rgba,
-        vector_size: size(&synthesis.vectors),
+        size: size(&view.image),
         vectors: &vectors,
         depth: &depth,
-        near_far: *near_far,
+        vector_size: size(&synthesis.vectors),
+        camera: *camera,
+        previous: in_this_space(moved, previous),
     };
-    let moved = (Quat::from_array(synthesis.moved.1), Vec3::from(synthesis.moved.0));
-    Some(between(&moving, was, moved, newest, 0.5))
+    Some(eye.extrapolate(moved_by(head_motion, camera), 0.5))
 }
 
-/// Returns four numbers for each pixel of a submitted image, beginning with the lowest row. Depth is the first of them.
-fn read_numbers(world: &mut World, image: &Image, is_depth: bool) -> Option<Vec<f32>> {
-    let texture = world.swapchain(sys::Swapchain::from_raw(image.swapchain)).ok()?.shown()?;
-    world.its_session().ok()?.graphics.read_numbers(texture, image.layer, image.rect, is_depth)
+/// Returns the previous frame's camera in this frame's space, which the application has moved: `moved` is this frame's
+/// space in the previous one's. That is no motion of what is seen.
+fn in_this_space(moved: Pose, previous: &EyeCamera) -> EyeCamera {
+    EyeCamera { pose: moved_by(inverse(moved), previous), ..*previous }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A head that stands still in the room stands still, wherever the application moves its space.
+    #[test]
+    fn a_space_that_the_application_moves_does_not_move_the_head() {
+        let moved = (Quat::from_rotation_y(0.4), Vec3::new(1.0, 0.0, -0.5));
+        let head = (Quat::from_rotation_x(0.3), Vec3::new(0.2, 1.6, -0.1));
+        let camera =
+            |pose| EyeCamera { pose, tangents: [-1.0, 1.0, -1.0, 1.0], inverse_distances: [10.0, 0.02] };
+        let now = camera(eye_pose(head));
+        let same = in_this_space(moved, &camera(eye_pose(compose(moved, head))));
+        assert!((same.pose.position - now.pose.position).length() < 1e-6, "{same:?}");
+        assert!(same.pose.orientation.dot(now.pose.orientation) > 1.0 - 1e-6, "{same:?}");
+    }
 }

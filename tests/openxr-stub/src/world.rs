@@ -435,8 +435,10 @@ impl World {
     /// Returns the head's pose in the space of the floor, at a time in nanoseconds.
     pub fn head_at(&self, time_ns: i64) -> (Quat, Vec3) {
         let seconds = self.moves_from_ns.map_or(0.0, |from| (time_ns - from).max(0) as f32 * 1e-9);
-        let Script { position, velocity, yaw_degrees, turn_degrees, .. } = &self.script;
-        let yaw = yaw_degrees + turn_degrees * seconds;
-        (Quat::from_rotation_y(yaw.to_radians()), Vec3::from(*position) + Vec3::from(*velocity) * seconds)
+        let Script { position, velocity, yaw_degrees, .. } = &self.script;
+        (
+            Quat::from_rotation_y(yaw_degrees.to_radians()),
+            Vec3::from(*position) + Vec3::from(*velocity) * seconds,
+        )
     }
 }

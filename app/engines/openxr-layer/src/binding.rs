@@ -1,7 +1,6 @@
 //! The graphics interface that the application binds its session to.
 
 use openxr_sys as sys;
-use yoro::synthesis::backend::WarpKind;
 
 use crate::dispatch::{Dispatch, XrResult};
 use crate::reason::Reason;
@@ -45,9 +44,7 @@ impl Binding {
     ///
     /// # Safety
     /// The device or the context exists until the pipeline is dropped.
-    pub unsafe fn synthesizer<W: WarpKind + Send + 'static>(
-        &self,
-    ) -> Result<Box<dyn Synthesizer<W>>, Reason> {
+    pub unsafe fn synthesizer(&self) -> Result<Box<dyn Synthesizer>, Reason> {
         // SAFETY: both require that the device or the context outlives the pipeline, as this function does.
         unsafe {
             Ok(match self {

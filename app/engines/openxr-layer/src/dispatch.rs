@@ -14,12 +14,12 @@ pub fn check(result: sys::Result) -> XrResult<sys::Result> {
 }
 
 macro_rules! table {
-    ($($(#[$attribute:meta])* $field:ident: $function:ident = $name:literal $(or $missing:path)?,)*) => {
+    ($($field:ident: $function:ident = $name:literal $(or $missing:path)?,)*) => {
         /// The functions that the layer calls or intercepts.
         pub struct Dispatch {
             /// The function that finds all others.
             pub get_instance_proc_addr: pfn::GetInstanceProcAddr,
-            $($(#[$attribute])* pub $field: pfn::$function,)*
+            $(pub $field: pfn::$function,)*
         }
 
         impl Dispatch {
@@ -39,7 +39,7 @@ macro_rules! table {
                 };
                 Ok(Dispatch {
                     get_instance_proc_addr: next,
-                    $($(#[$attribute])* $field: {
+                    $($field: {
                         let found = find($name).map(|function| {
                             // SAFETY: a function of this name has this type.
                             unsafe { std::mem::transmute::<pfn::VoidFunction, pfn::$function>(function) }
@@ -115,8 +115,6 @@ table! {
     begin_session: BeginSession = c"xrBeginSession",
     create_reference_space: CreateReferenceSpace = c"xrCreateReferenceSpace",
     destroy_space: DestroySpace = c"xrDestroySpace",
-    #[cfg(feature = "capture")]
-    locate_space: LocateSpace = c"xrLocateSpace",
     enumerate_view_configurations: EnumerateViewConfigurations = c"xrEnumerateViewConfigurations",
     get_view_configuration_properties: GetViewConfigurationProperties = c"xrGetViewConfigurationProperties",
     enumerate_view_configuration_views: EnumerateViewConfigurationViews = c"xrEnumerateViewConfigurationViews",

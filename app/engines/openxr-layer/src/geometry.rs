@@ -197,8 +197,6 @@ pub struct Split {
     pub source: Rectangle,
     /// The warp to the other eye, whose image has the size of `crop`.
     pub warp: Warp,
-    /// The eyes whose pixels are moved: those that are submitted or, of a flipped image, those of the mirrored world.
-    pub eyes: EyePair,
 }
 
 /// Splits a submitted view into two eyes with the relative poses and frusta of the offer's eyes. The view's pose, field
@@ -265,7 +263,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
     let mut warp = views.warp;
     warp.law.scale /= f64::from(max - min);
     warp.law.offset -= warp.law.scale * f64::from(min);
-    Ok(Split { crop, poses, frusta, source, warp, eyes: pair })
+    Ok(Split { crop, poses, frusta, source, warp })
 }
 
 #[cfg(test)]

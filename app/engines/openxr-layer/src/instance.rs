@@ -10,7 +10,7 @@ use sys::ViewConfigurationType as Views;
 
 use crate::dispatch::{Dispatch, XrResult, check};
 use crate::settings::{OfferedAs, Settings};
-use crate::{lock, sizes, structures};
+use crate::{lock, sizes};
 
 /// The estimated width of the offered view, relative to an eye's, before it is known from a session. The frusta of the
 /// two eyes of common headsets differ by about this much.
@@ -43,11 +43,16 @@ pub struct Instance {
 }
 
 /// A rendered view of a system, and its recommended size in pixels.
-type RecommendedSize = ((sys::SystemId, Part), [u32; 2]);
+#[derive(Clone, Copy)]
+struct RecommendedSize {
+    system: sys::SystemId,
+    role: ViewRole,
+    size: [u32; 2],
+}
 
 /// What a rendered view stands for in both eyes: all that they see, or, of four views, the wide ones or the insets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum ViewRole {
     /// The two views of PRIMARY_STEREO.
     Eyes,
     /// The first two of PRIMARY_STEREO_WITH_FOVEATED_INSET.
@@ -56,9 +61,9 @@ pub enum Part {
     Inset,
 }
 
-impl Part {
-    /// The parts of four views, in the order of the views.
-    pub const OF_FOUR: [Part; 2] = [Part::Wide, Part::Inset];
+impl ViewRole {
+    /// The roles of four views, in the order of the views.
+    pub const OF_FOUR: [ViewRole; 2] = [ViewRole::Wide, ViewRole::Inset];
 }
 
 impl Instance {
@@ -161,38 +166,26 @@ impl Instance {
         Ok(views)
     }
 
-    /// Returns the one view: the dominant eye's, with more pixels, and more motion vectors if the chain asks for their size.
+    /// Returns the one view: the dominant eye's, with more pixels.
     pub fn view(&self, system: sys::SystemId, chain: *mut c_void) -> XrResult<sys::ViewConfigurationView> {
         let mut chains = [ptr::null_mut(); 2];
         chains[self.settings.dominant.index()] = chain;
         let own = self.own_views(system, Views::PRIMARY_STEREO, chains)?[self.settings.dominant.index()];
-        Ok(self.enlarged(system, Part::Eyes, own))
+        Ok(self.enlarged(system, ViewRole::Eyes, own))
     }
 
     fn enlarged(
         &self,
         system: sys::SystemId,
-        part: Part,
+        role: ViewRole,
         own: sys::ViewConfigurationView,
     ) -> sys::ViewConfigurationView {
         let eye = [own.recommended_image_rect_width, own.recommended_image_rect_height];
-        let size = self.told_size(system, part).unwrap_or_else(|| {
-            let known = self.circumstances(system, part).and_then(|key| sizes::recall(&key, eye));
+        let size = self.announced_size(system, role).unwrap_or_else(|| {
+            let known = self.circumstances(system, role).and_then(|key| sizes::recall(&key, eye));
             let size = known.unwrap_or([(eye[0] as f32 * ESTIMATED_WIDTH).ceil() as u32, eye[1]]);
-            self.latch_size(system, part, size)
+            self.latch_size(system, role, size)
         });
-        let ty = sys::FrameSynthesisConfigViewEXT::TYPE;
-        // SAFETY: the application's chain, which the runtime has filled in.
-        let vectors = unsafe { structures::find_output::<sys::FrameSynthesisConfigViewEXT>(own.next, ty) };
-        if let Some(vectors) = vectors {
-            // SAFETY: as above.
-            let vectors = unsafe { &mut *vectors };
-            let (width, height) = (
-                &mut vectors.recommended_motion_vector_image_rect_width,
-                &mut vectors.recommended_motion_vector_image_rect_height,
-            );
-            [*width, *height] = sizes::scaled([*width, *height], eye, size);
-        }
         sys::ViewConfigurationView {
             recommended_image_rect_width: size[0].min(own.max_image_rect_width),
             recommended_image_rect_height: size[1].min(own.max_image_rect_height),
@@ -200,13 +193,13 @@ impl Instance {
         }
     }
 
-    /// Returns the views of a configuration, of which those of the non-dominant eye are tiny. `parts` are what the views
+    /// Returns the views of a configuration, of which those of the non-dominant eye are tiny. `roles` are what the views
     /// of each eye stand for, in their order.
     pub fn shrunk_views<const N: usize>(
         &self,
         system: sys::SystemId,
         kind: Views,
-        parts: &[Part],
+        roles: &[ViewRole],
         chains: [*mut c_void; N],
     ) -> XrResult<[sys::ViewConfigurationView; N]> {
         let own = self.own_views(system, kind, chains)?;
@@ -216,37 +209,38 @@ impl Instance {
             ..own
         });
         let dominant = self.settings.dominant.index();
-        for (i, part) in parts.iter().enumerate() {
+        for (i, role) in roles.iter().enumerate() {
             let view = 2 * i + dominant;
-            views[view] = self.enlarged(system, *part, own[view]);
+            views[view] = self.enlarged(system, *role, own[view]);
         }
         Ok(views)
     }
 
-    fn told_size(&self, system: sys::SystemId, part: Part) -> Option<[u32; 2]> {
-        lock(&self.sizes).iter().find(|(known, _)| *known == (system, part)).map(|(_, size)| *size)
+    fn announced_size(&self, system: sys::SystemId, role: ViewRole) -> Option<[u32; 2]> {
+        let sizes = lock(&self.sizes);
+        sizes.iter().find(|known| known.system == system && known.role == role).map(|known| known.size)
     }
 
     /// Sets the size of a system's rendered view, unless it is already set: a runtime must always return the same sizes.
     /// Returns the size in force.
-    pub fn latch_size(&self, system: sys::SystemId, part: Part, size: [u32; 2]) -> [u32; 2] {
+    pub fn latch_size(&self, system: sys::SystemId, role: ViewRole, size: [u32; 2]) -> [u32; 2] {
         let mut sizes = lock(&self.sizes);
-        if let Some((_, told)) = sizes.iter().find(|(known, _)| *known == (system, part)) {
-            return *told;
+        if let Some(known) = sizes.iter().find(|known| known.system == system && known.role == role) {
+            return known.size;
         }
-        sizes.push(((system, part), size));
+        sizes.push(RecommendedSize { system, role, size });
         size
     }
 
     /// Remembers the size of a rendered view, with that of an eye's, for the next start.
-    pub fn remember_size(&self, system: sys::SystemId, part: Part, eye: [u32; 2], size: [u32; 2]) {
-        if let Some(key) = self.circumstances(system, part) {
+    pub fn remember_size(&self, system: sys::SystemId, role: ViewRole, eye: [u32; 2], size: [u32; 2]) {
+        if let Some(key) = self.circumstances(system, role) {
             sizes::remember(&key, eye, size);
         }
     }
 
     /// Returns everything that the frusta of the eyes and of the offered view depend on: runtime, headset and settings.
-    fn circumstances(&self, system: sys::SystemId, part: Part) -> Option<String> {
+    fn circumstances(&self, system: sys::SystemId, role: ViewRole) -> Option<String> {
         // SAFETY: plain data, for which zeros are valid; a live instance, and structures with their types set.
         let (runtime, headset) = unsafe {
             let mut runtime =
@@ -258,11 +252,11 @@ impl Instance {
         };
         let (runtime, headset) = (text(&runtime.runtime_name), text(&headset.system_name));
         let Settings { dominant, guard_band, .. } = &self.settings;
-        let part = match part {
-            Part::Eyes => "",
-            Part::Wide => ", wide",
-            Part::Inset => ", inset",
+        let role = match role {
+            ViewRole::Eyes => "",
+            ViewRole::Wide => ", wide",
+            ViewRole::Inset => ", inset",
         };
-        Some(format!("{runtime}, {headset}, {} eye, guard band {guard_band}{part}", dominant.name()))
+        Some(format!("{runtime}, {headset}, {} eye, guard band {guard_band}{role}", dominant.name()))
     }
 }

@@ -6,22 +6,19 @@
 //! must not depend on a scene, a window or a renderer, and must not fail a call that would succeed without it.
 //!
 //! It serves applications on Vulkan (XR_KHR_vulkan_enable and enable2), OpenGL (XR_KHR_opengl_enable with Xlib or EGL)
-//! and OpenGL ES (XR_KHR_opengl_es_enable). Calls of all others, and of those that begin PRIMARY_STEREO, pass through;
-//! with the setting `shrink`, the latter are told to render one of two views tiny, and that view is replaced; so are
-//! those of one eye if there are four, with a foveated inset for each eye. A frame that cannot be synthesized shows the
-//! same image to both eyes; the log gives each reason once, and counts such frames.
+//! and OpenGL ES (XR_KHR_opengl_es_enable). It passes on the calls of all others, and of those that begin their session
+//! with PRIMARY_STEREO. With the setting `shrink`, it recommends a tiny size to the latter for one of the two views and
+//! replaces that view; of four views with a foveated inset for each eye, it replaces both of one eye. When a frame cannot
+//! be synthesized, both eyes see the same image. The log gives each reason once, and counts such frames.
 //!
 //! * `entry`: the functions that the loader and the application call.
 //! * `objects`: the application's instances, sessions and swapchains, and the order of locks.
 //! * `frame`: xrEndFrame.
 //! * `session`, `swapchain`, `instance`: one object each. `dispatch`: the functions of the next layer or the runtime.
 //! * `geometry`: the offered view, and how a submitted view is split. `mirror`: the same for flipped images.
-//! * `motion`: the vectors of both eyes, from those that the application chains to its view.
 //! * `sizes`: the offered view's size, remembered from one start to the next.
 //! * `binding`: the graphics interface of a session. `synthesizer`: the synthesis, implemented by `vulkan`, on the
 //!   application's device and queue, and by `gl`, in its context.
-//!
-//! The feature `capture` adds what tests need: pictures of what the runtime receives, and a world that stands still.
 
 mod binding;
 mod dispatch;
@@ -34,7 +31,6 @@ pub mod library;
 pub mod log;
 mod manifest;
 mod mirror;
-mod motion;
 mod objects;
 mod reason;
 mod session;
@@ -48,7 +44,7 @@ mod xdg;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use log::say;
+use log::log_line;
 
 pub use entry::xrNegotiateLoaderApiLayerInterface;
 pub use manifest::{DISABLE, ENABLE, Kind, MANIFEST, NAME, manifest};

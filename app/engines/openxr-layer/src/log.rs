@@ -9,8 +9,8 @@ use std::sync::Mutex;
 use crate::lock;
 use crate::xdg;
 
-/// The length of the longest line in bytes. Longer lines are truncated.
-const LONGEST: usize = 1024;
+/// The largest length of a line in bytes. Longer lines are truncated.
+const MAX_LINE_BYTES: usize = 1024;
 
 /// Returns the path of the log of the last program, `$XDG_STATE_HOME/yoro/layer.log` (`~/.local/state` if that is not
 /// set), or `None` without a home folder.
@@ -64,7 +64,7 @@ fn show(line: &[u8]) {
         fn __android_log_write(priority: c_int, tag: *const c_char, text: *const c_char) -> c_int;
     }
     const INFO: c_int = 4;
-    let mut text = [0u8; LONGEST];
+    let mut text = [0u8; MAX_LINE_BYTES];
     text[..line.len() - 1].copy_from_slice(&line[..line.len() - 1]);
     // SAFETY: both strings are null-terminated.
     unsafe { __android_log_write(INFO, c"yoro".as_ptr(), text.as_ptr().cast()) };
@@ -72,13 +72,13 @@ fn show(line: &[u8]) {
 
 /// Writes a line in one piece, so that no line of the application gets in between, and without allocating. The
 /// application may have closed standard error.
-pub fn say(text: fmt::Arguments) {
-    let mut line = [b'\n'; LONGEST];
-    let (place, _) = line.split_at_mut(LONGEST - 1);
+pub fn log_line(text: fmt::Arguments) {
+    let mut line = [b'\n'; MAX_LINE_BYTES];
+    let (place, _) = line.split_at_mut(MAX_LINE_BYTES - 1);
     let mut rest = &mut *place;
     // Text that does not fit is truncated.
     write!(rest, "yoro layer: {text}").ok();
-    let length = LONGEST - 1 - rest.len();
+    let length = MAX_LINE_BYTES - 1 - rest.len();
     line[length] = b'\n';
     let line = &line[..=length];
     show(line);

@@ -1,4 +1,4 @@
-//! Reasons why a frame is not synthesized, or has no motion vectors.
+//! Reasons why a frame is not synthesized.
 
 use std::sync::Arc;
 
@@ -6,12 +6,11 @@ use ash::vk;
 use openxr_sys as sys;
 use yoro::eyes::EyesError;
 use yoro::opengl::GlError;
-use yoro::synthesis::ArgumentError;
 use yoro::vulkan::VulkanError;
 
 use crate::geometry::GeometryError;
 
-/// The reason why both eyes are shown the same image, or why neither has motion vectors.
+/// The reason why both eyes are shown the same image.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum Reason {
     /// The view has no XrCompositionLayerDepthInfoKHR.
@@ -38,9 +37,9 @@ pub enum Reason {
     /// The runtime owns the image: it was not released since the last frame, or was released too early.
     #[error("{0} was not released since the last frame")]
     Old(&'static str),
-    /// Colour or motion vectors, and their depth, have different sizes or rectangles.
-    #[error("{0} and {1} have different sizes or rectangles")]
-    Apart(&'static str, &'static str),
+    /// Colour and depth have different sizes or rectangles.
+    #[error("colour and depth have different sizes or rectangles")]
+    Apart,
     /// A rectangle or an array index lies outside the swapchain.
     #[error("a rectangle or an array index lies beyond its swapchain")]
     Beyond,
@@ -67,12 +66,6 @@ pub enum Reason {
     /// OpenGL or the synthesis on it has failed. Shared, because without a pipeline every frame returns the error.
     #[error("{0}")]
     Gl(Arc<GlError>),
-    /// Nothing can be made of the motion vectors.
-    #[error("{0}")]
-    Vectors(ArgumentError),
-    /// The x of motion vectors is multiplied by 0, or by a number that is none.
-    #[error("its motionVectorScale.x is 0 or not finite")]
-    Scale,
     /// A function of the runtime has failed.
     #[error("{0} fails with {1:?}")]
     Runtime(&'static str, sys::Result),

@@ -13,7 +13,7 @@ use yoro::eyes::{EyesError, Frustum, Pose};
 use crate::binding::Binding;
 use crate::dispatch::{XrResult, check};
 use crate::geometry::{IDENTITY, Offer, frustum, pose};
-use crate::instance::{Instance, Part};
+use crate::instance::{Instance, ViewRole};
 use crate::{lock, sizes};
 
 /// The value of `Session::views` (the field) before the session begins.
@@ -28,13 +28,13 @@ pub struct Session {
     /// True if PRIMARY_MONO is implemented by the layer, because the runtime shows two views on this system.
     pub offers_mono: bool,
     system: sys::SystemId,
-    /// The sizes in pixels that the runtime recommends for the dominant eye's views, by [`Part`].
+    /// The sizes in pixels that the runtime recommends for the dominant eye's views, by [`ViewRole`].
     eye_sizes: [[u32; 2]; 3],
     /// The value of [`Session::views`], or [`NOT_BEGUN`].
     views: AtomicUsize,
-    /// True if the size of the offered view is remembered for the next start, by [`Part`].
+    /// True if the size of the offered view is remembered for the next start, by [`ViewRole`].
     remembered: [AtomicBool; 3],
-    /// The last offers by [`Part`], or the reasons why nothing can be offered.
+    /// The last offers by [`ViewRole`], or the reasons why nothing can be offered.
     offers: Mutex<[Option<Result<Offer, EyesError>>; 3]>,
     /// When the last xrBeginFrame returned.
     pub begun: Mutex<Option<Instant>>,
@@ -57,12 +57,12 @@ impl Session {
         if offers_mono
             && let Ok(views) = instance.own_views(system, Views::PRIMARY_STEREO, [ptr::null_mut(); 2])
         {
-            eye_sizes[Part::Eyes as usize] = size(&views[dominant]);
+            eye_sizes[ViewRole::Eyes as usize] = size(&views[dominant]);
         }
         let four = Views::PRIMARY_STEREO_WITH_FOVEATED_INSET;
         if shrinks_four && let Ok(views) = instance.own_views(system, four, [ptr::null_mut(); 4]) {
-            eye_sizes[Part::Wide as usize] = size(&views[dominant]);
-            eye_sizes[Part::Inset as usize] = size(&views[2 + dominant]);
+            eye_sizes[ViewRole::Wide as usize] = size(&views[dominant]);
+            eye_sizes[ViewRole::Inset as usize] = size(&views[2 + dominant]);
         }
         let session = Session {
             handle,
@@ -77,16 +77,16 @@ impl Session {
             begun: Mutex::default(),
         };
         if offers_mono {
-            session.latch_before_the_first_frame::<2>(Views::PRIMARY_STEREO, &[Part::Eyes]);
+            session.latch_before_the_first_frame::<2>(Views::PRIMARY_STEREO, &[ViewRole::Eyes]);
         }
         if shrinks_four {
-            session.latch_before_the_first_frame::<4>(four, &Part::OF_FOUR);
+            session.latch_before_the_first_frame::<4>(four, &ViewRole::OF_FOUR);
         }
         session
     }
 
     /// Sets the sizes of the rendered views, if the runtime locates views before the session begins.
-    fn latch_before_the_first_frame<const N: usize>(&self, kind: Views, parts: &[Part]) -> Option<()> {
+    fn latch_before_the_first_frame<const N: usize>(&self, kind: Views, roles: &[ViewRole]) -> Option<()> {
         let info = sys::ReferenceSpaceCreateInfo {
             ty: sys::ReferenceSpaceCreateInfo::TYPE,
             next: ptr::null(),
@@ -102,7 +102,7 @@ impl Session {
             next: ptr::null(),
             view_configuration_type: kind,
             // Any time is valid for the VIEW space, and the present time would need an extension.
-            display_time: self.instance.settings.time(sys::Time::from_nanos(1)),
+            display_time: sys::Time::from_nanos(1),
             space,
         };
         let mut state = sys::ViewState {
@@ -115,9 +115,9 @@ impl Session {
         unsafe { (next.destroy_space)(space) };
         // Poses may be invalid before tracking begins, but fields of view are valid.
         let located = located.ok()?;
-        for (views, part) in located.chunks_exact(2).zip(parts) {
-            if let Ok(offer) = self.offer_for(*part, &[views[0], views[1]]) {
-                self.instance.latch_size(self.system, *part, offer.size);
+        for (views, role) in located.chunks_exact(2).zip(roles) {
+            if let Ok(offer) = self.offer_for(*role, &[views[0], views[1]]) {
+                self.instance.latch_size(self.system, *role, offer.size);
             }
         }
         Some(())
@@ -147,17 +147,17 @@ impl Session {
         Ok(views)
     }
 
-    fn offer_for(&self, part: Part, views: &[sys::View; 2]) -> Result<Offer, EyesError> {
+    fn offer_for(&self, role: ViewRole, views: &[sys::View; 2]) -> Result<Offer, EyesError> {
         let settings = &self.instance.settings;
         let views = views.map(|view| (pose(view.pose), frustum(view.fov)));
-        Offer::new(views, self.eye_sizes[part as usize], settings.dominant, settings.guard_band)
+        Offer::new(views, self.eye_sizes[role as usize], settings.dominant, settings.guard_band)
     }
 
     /// Returns the view that the application gets instead of the runtime's two, and remembers the offer. If nothing can
     /// be synthesized between them, it is the dominant eye's own view.
     pub fn offer(&self, views: &[sys::View; 2]) -> (Pose, Frustum) {
         let own = &views[self.instance.settings.dominant.index()];
-        self.remember(Part::Eyes, self.offer_for(Part::Eyes, views))
+        self.remember(ViewRole::Eyes, self.offer_for(ViewRole::Eyes, views))
             .unwrap_or((pose(own.pose), frustum(own.fov)))
     }
 
@@ -166,32 +166,34 @@ impl Session {
     /// same, so neither is changed then.
     pub fn offer_two_of_four(&self, views: &[sys::View; 4]) -> Option<[(Pose, Frustum); 2]> {
         let [left, right, left_inset, right_inset] = *views;
-        let wide = self.offer_for(Part::Wide, &[left, right]);
-        let inset = self.offer_for(Part::Inset, &[left_inset, right_inset]);
+        let wide = self.offer_for(ViewRole::Wide, &[left, right]);
+        let inset = self.offer_for(ViewRole::Inset, &[left_inset, right_inset]);
         let failed = wide.err().or(inset.err());
         let of = |offer| failed.map_or(offer, Err);
-        self.remember(Part::Wide, of(wide)).zip(self.remember(Part::Inset, of(inset))).map(|(a, b)| [a, b])
+        self.remember(ViewRole::Wide, of(wide))
+            .zip(self.remember(ViewRole::Inset, of(inset)))
+            .map(|(a, b)| [a, b])
     }
 
-    fn remember(&self, part: Part, offer: Result<Offer, EyesError>) -> Option<(Pose, Frustum)> {
-        lock(&self.offers)[part as usize] = Some(offer);
+    fn remember(&self, role: ViewRole, offer: Result<Offer, EyesError>) -> Option<(Pose, Frustum)> {
+        lock(&self.offers)[role as usize] = Some(offer);
         let offer = offer.ok()?;
-        if !self.remembered[part as usize].swap(true, Ordering::Relaxed) {
-            let eye = self.eye_sizes[part as usize];
-            self.instance.remember_size(self.system, part, eye, offer.size);
+        if !self.remembered[role as usize].swap(true, Ordering::Relaxed) {
+            let eye = self.eye_sizes[role as usize];
+            self.instance.remember_size(self.system, role, eye, offer.size);
         }
         Some((offer.pose, offer.frustum))
     }
 
-    /// Returns the last offer of a part, or the reason why nothing can be offered; `None` before views were located.
-    pub fn last_offer(&self, part: Part) -> Option<Result<Offer, EyesError>> {
-        lock(&self.offers)[part as usize]
+    /// Returns the last offer for a role, or the reason why nothing can be offered; `None` before views were located.
+    pub fn last_offer(&self, role: ViewRole) -> Option<Result<Offer, EyesError>> {
+        lock(&self.offers)[role as usize]
     }
 
     /// Returns the size in pixels of the offered view for an eye of this size.
     pub fn enlarged(&self, size: [u32; 2]) -> [u32; 2] {
-        let own = self.eye_sizes[Part::Eyes as usize];
-        let offered = self.last_offer(Part::Eyes).and_then(Result::ok).map_or(own, |offer| offer.size);
+        let own = self.eye_sizes[ViewRole::Eyes as usize];
+        let offered = self.last_offer(ViewRole::Eyes).and_then(Result::ok).map_or(own, |offer| offer.size);
         sizes::scaled(size, own, offered)
     }
 
@@ -217,12 +219,12 @@ impl Session {
     }
 
     /// Returns what the rewritten views of each eye stand for, in their order.
-    pub fn parts(&self) -> &'static [Part] {
-        if self.views() == 4 { &Part::OF_FOUR } else { &[Part::Eyes] }
+    pub fn roles(&self) -> &'static [ViewRole] {
+        if self.views() == 4 { &ViewRole::OF_FOUR } else { &[ViewRole::Eyes] }
     }
 
     /// True if the application's images are read at the end of a frame.
     pub fn reads_images(&self) -> bool {
-        self.binding.is_some() && (self.views() > 0 || self.instance.settings.captures())
+        self.binding.is_some() && self.views() > 0
     }
 }

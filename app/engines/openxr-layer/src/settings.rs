@@ -1,18 +1,21 @@
 //! User settings. Environment variables (on Android, system properties) set them for one run, a file for one
 //! application or for all.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use openxr_sys as sys;
+use serde::de::{Deserializer, Error as _};
+use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 use yoro::eyes::{Eye, GuardBand};
 
 use crate::xdg;
 
 /// The position of the configuration with one view in the list of view configurations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum OfferedAs {
     /// It is the only one in the list. An application that nevertheless begins in stereo still gets stereo.
     Only,
@@ -24,210 +27,151 @@ pub enum OfferedAs {
     Off,
 }
 
-/// The settings of one application.
-#[derive(Clone, Debug, PartialEq)]
+/// The settings of one application. [openxr-layer.md](../../../../docs/openxr-layer.md) describes them for users.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// The position of the configuration with one view.
     pub offer: OfferedAs,
     /// The eye that the application renders.
+    #[serde(deserialize_with = "eye")]
     pub dominant: Eye,
     /// The width that is rendered beyond both eyes' views.
+    #[serde(deserialize_with = "guard_band")]
     pub guard_band: GuardBand,
-    /// True if an application that begins in stereo is told that one eye's image is tiny.
+    /// True if one eye's image is recommended to be tiny to applications that begin in stereo, and replaced.
+    #[serde(deserialize_with = "switch")]
     pub shrink: bool,
-    /// YORO_LAYER_CAPTURE: a folder for pictures of what the runtime receives in one frame.
-    #[cfg(feature = "capture")]
-    pub capture: Option<PathBuf>,
-    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located. LOCAL spaces become STAGE
-    /// spaces. The world stands still, so that pictures of two runs can be compared.
-    #[cfg(feature = "capture")]
-    pub time: Option<i64>,
-}
-
-/// A row of the table of settings.
-pub struct Setting {
-    /// The key in the file. The environment variable is `YORO_LAYER_` followed by the key in capitals.
-    pub key: &'static str,
-    /// The values that the setting accepts, as error messages list them.
-    pub values: &'static str,
-    /// The value if none is given.
-    pub default: &'static str,
-    /// The meaning, in one sentence.
-    pub help: &'static str,
-    /// Sets a value. Returns `None` if it is not one of `values`.
-    set: fn(&mut Settings, &str) -> Option<()>,
-}
-
-/// All settings of users.
-pub const SETTINGS: [Setting; 4] = [
-    Setting {
-        key: "offer",
-        values: "only, first, last or off",
-        default: "first",
-        help: "Where the list of view configurations has PRIMARY_MONO: alone, before the runtime's own, or after them; \
-               `off` leaves the application alone",
-        set: |settings, text| {
-            settings.offer = match text {
-                "only" => OfferedAs::Only,
-                "first" => OfferedAs::First,
-                "last" => OfferedAs::Last,
-                "off" => OfferedAs::Off,
-                _ => return None,
-            };
-            Some(())
-        },
-    },
-    Setting {
-        key: "dominant",
-        values: "left or right",
-        default: "right",
-        help: "The eye that the application renders",
-        set: |settings, text| {
-            settings.dominant = Eye::BOTH.into_iter().find(|eye| eye.name() == text)?;
-            Some(())
-        },
-    },
-    Setting {
-        key: "guard_band",
-        values: "none, pixels such as 40px, or metres such as 1.0",
-        default: "1.0",
-        help: "What is rendered beyond both eyes' views: columns of pixels, or as many as objects at that distance need",
-        set: |settings, text| {
-            settings.guard_band = GuardBand::from_str(text).ok()?;
-            Some(())
-        },
-    },
-    Setting {
-        key: "shrink",
-        values: "on or off",
-        default: "off",
-        help: "An application that begins in stereo is told that one eye's image is tiny, and that image is replaced. \
-               Only for applications that make a swapchain for each eye, of the size recommended for it",
-        set: |settings, text| {
-            settings.shrink = match text {
-                "on" => true,
-                "off" => false,
-                _ => return None,
-            };
-            Some(())
-        },
-    },
-];
-
-#[cfg(feature = "capture")]
-const TIME: Setting = Setting {
-    key: "time",
-    values: "nanoseconds, more than 0",
-    default: "",
-    help: "The time at which all views and spaces are located",
-    set: |settings, text| {
-        settings.time = Some(text.parse().ok().filter(|time| *time > 0)?);
-        Some(())
-    },
-};
-
-impl Setting {
-    /// Returns the name of the environment variable.
-    pub fn variable(&self) -> String {
-        format!("YORO_LAYER_{}", self.key.to_ascii_uppercase())
-    }
-
-    /// Sets the value that `place` gives for `key`.
-    fn choose(
-        &self,
-        settings: &mut Settings,
-        value: &str,
-        place: &str,
-        key: &str,
-    ) -> Result<(), SettingsError> {
-        (self.set)(settings, value).ok_or_else(|| SettingsError::Value {
-            place: place.to_owned(),
-            key: key.to_owned(),
-            value: value.to_owned(),
-            remedy: self.values,
-        })
-    }
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        let mut settings = Settings {
+        Settings {
             offer: OfferedAs::First,
             dominant: Eye::Right,
-            guard_band: GuardBand::None,
+            guard_band: GuardBand::Distance(1.0),
             shrink: false,
-            #[cfg(feature = "capture")]
-            capture: None,
-            #[cfg(feature = "capture")]
-            time: None,
-        };
-        for setting in SETTINGS {
-            // A test checks that every default is a valid value.
-            (setting.set)(&mut settings, setting.default);
         }
-        settings
     }
+}
+
+/// The keys of the file. The environment variables are `YORO_LAYER_` followed by a key in capitals.
+const KEYS: [&str; 4] = ["offer", "dominant", "guard_band", "shrink"];
+
+fn eye<'de, D: Deserializer<'de>>(value: D) -> Result<Eye, D::Error> {
+    let name = String::deserialize(value)?;
+    let eye = Eye::BOTH.into_iter().find(|eye| eye.name() == name);
+    eye.ok_or_else(|| D::Error::unknown_variant(&name, &["left", "right"]))
+}
+
+fn switch<'de, D: Deserializer<'de>>(value: D) -> Result<bool, D::Error> {
+    match String::deserialize(value)?.as_str() {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        other => Err(D::Error::unknown_variant(other, &["on", "off"])),
+    }
+}
+
+/// Reads a text or, since it needs no quotes, a number of metres.
+fn guard_band<'de, D: Deserializer<'de>>(value: D) -> Result<GuardBand, D::Error> {
+    let text = match Value::deserialize(value)? {
+        Value::String(text) => text,
+        other => other.to_string(),
+    };
+    // The view is offered before anything is rendered, so the guard band cannot depend on the scene.
+    let band = GuardBand::from_str(&text).ok().filter(|_| !text.starts_with("auto"));
+    band.ok_or_else(|| {
+        let remedy = "give none, pixels such as 40px, or metres such as 1.0";
+        D::Error::custom(format!("{text:?} is no guard band: {remedy}"))
+    })
 }
 
 /// A mistake in the settings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SettingsError {
-    /// The file cannot be read, or is not TOML with these keys.
-    #[error("{}: {reason}; mend it or remove it", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The mistake, in one line.
-        reason: String,
-    },
-    /// A value that the setting does not accept.
-    #[error("{place}: {key} is {value:?}; give {remedy}")]
-    Value {
-        /// The environment or the file.
-        place: String,
-        /// The variable or the key.
-        key: String,
-        /// The value.
-        value: String,
-        /// The values that the setting accepts.
-        remedy: &'static str,
-    },
+#[error("{place}: {reason}; mend it or remove it")]
+pub struct SettingsError {
+    /// The file, with the section of a single application, or the variable.
+    place: String,
+    /// What is wrong, and what would be right, in one line.
+    reason: String,
+}
+
+impl SettingsError {
+    fn new(place: String, reason: impl ToString) -> SettingsError {
+        // serde names the key on a line of its own.
+        let reason = reason.to_string().trim_end().replace('\n', " ");
+        SettingsError { place, reason }
+    }
+}
+
+/// The settings file: keys for all applications, and those for single ones.
+#[derive(Deserialize, Serialize)]
+struct SettingsFile {
+    #[serde(default)]
+    application: BTreeMap<String, Table>,
+    #[serde(flatten)]
+    all: Table,
+}
+
+/// Values from one place.
+struct Source {
+    place: String,
+    /// The only application that they are meant for, or `None` for all.
+    application: Option<String>,
+    values: Table,
 }
 
 /// Returns the mistakes in the settings of every application that the file names, and in those for all applications.
 pub fn mistakes() -> Vec<SettingsError> {
-    mistakes_in(&file())
+    mistakes_in(path().and_then(|path| read(&path)), variable)
 }
 
-fn mistakes_in(file: &Option<SettingsFile>) -> Vec<SettingsError> {
-    let mut names = vec![String::new()];
-    if let Some((_, Ok(text))) = file {
-        let all = text.parse::<Table>().unwrap_or_default();
-        let applications = all.get("application").and_then(Value::as_table);
-        names.extend(applications.into_iter().flat_map(|applications| applications.keys().cloned()));
-    }
-    let mut mistakes: Vec<SettingsError> = Vec::new();
-    for name in names {
-        let (_, errors) = Settings::resolve(&name, file.clone(), variable);
-        for error in errors {
-            if !mistakes.contains(&error) {
-                mistakes.push(error);
-            }
+fn mistakes_in(
+    file: Option<Result<Vec<Source>, SettingsError>>,
+    environment: impl Fn(&str) -> Option<OsString>,
+) -> Vec<SettingsError> {
+    match file.unwrap_or(Ok(Vec::new())) {
+        Err(error) => vec![error],
+        Ok(mut sources) => {
+            sources.extend(variables(environment));
+            let check = |source: Source| Some((source.place, Settings::deserialize(source.values).err()?));
+            let errors = sources.into_iter().filter_map(check);
+            errors.map(|(place, error)| SettingsError::new(place, error)).collect()
         }
     }
-    mistakes
 }
 
-/// The path of the settings file, and its text or the reason why it cannot be read.
-type SettingsFile = (PathBuf, Result<String, String>);
-
 /// Reads the settings file, if it exists.
-fn file() -> Option<SettingsFile> {
-    let path = path()?;
-    match std::fs::read_to_string(&path) {
+fn read(path: &Path) -> Option<Result<Vec<Source>, SettingsError>> {
+    match std::fs::read_to_string(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
-        text => Some((path, text.map_err(|error| error.to_string()))),
+        Err(error) => Some(Err(SettingsError::new(path.display().to_string(), error))),
+        Ok(text) => Some(sections(path, &text)),
     }
+}
+
+/// Returns the sections of the file, first that for all applications.
+fn sections(path: &Path, text: &str) -> Result<Vec<Source>, SettingsError> {
+    let path = path.display().to_string();
+    let file: SettingsFile =
+        toml::from_str(text).map_err(|error| SettingsError::new(path.clone(), error.message()))?;
+    let mut sources = vec![Source { place: path.clone(), application: None, values: file.all }];
+    sources.extend(file.application.into_iter().map(|(name, values)| Source {
+        place: format!("{path}, [application.{name}]"),
+        application: Some(name),
+        values,
+    }));
+    Ok(sources)
+}
+
+/// Returns the settings of the environment.
+fn variables(environment: impl Fn(&str) -> Option<OsString>) -> impl Iterator<Item = Source> {
+    KEYS.into_iter().filter_map(move |key| {
+        let place = format!("YORO_LAYER_{}", key.to_ascii_uppercase());
+        let value = environment(&place)?.to_string_lossy().into_owned();
+        let values = Table::from_iter([(key.to_owned(), Value::String(value))]);
+        Some(Source { place, application: None, values })
+    })
 }
 
 /// Returns the path of the settings file, `$XDG_CONFIG_HOME/yoro/layer.toml` (`~/.config` if that is not set), or
@@ -235,9 +179,6 @@ fn file() -> Option<SettingsFile> {
 pub fn path() -> Option<PathBuf> {
     Some(xdg::folder("XDG_CONFIG_HOME", ".config")?.join("yoro/layer.toml"))
 }
-
-/// The name, for error messages, of the source of settings for one run.
-const VARIABLES: &str = if cfg!(target_os = "android") { "the system properties" } else { "the environment" };
 
 #[cfg(not(target_os = "android"))]
 fn variable(name: &str) -> Option<OsString> {
@@ -258,111 +199,34 @@ fn variable(name: &str) -> Option<OsString> {
     (!value.is_empty()).then(|| value.into())
 }
 
-/// Parses the file: returns the keys for all applications, and those for this one.
-fn read_file(text: &str, application: &str) -> Result<[Table; 2], String> {
-    let mut all: Table = text.parse().map_err(|error: toml::de::Error| error.message().to_owned())?;
-    let applications = match all.remove("application") {
-        None => Table::new(),
-        Some(Value::Table(applications)) => applications,
-        Some(_) => return Err("`application` is no table".to_owned()),
-    };
-    check_keys(&all)?;
-    let mut own = Table::new();
-    for (name, section) in applications {
-        let Value::Table(section) = section else {
-            return Err(format!("`application.{name}` is no table"));
-        };
-        check_keys(&section)?;
-        if name == application {
-            own = section;
-        }
-    }
-    Ok([all, own])
-}
-
-fn check_keys(section: &Table) -> Result<(), String> {
-    match section.keys().find(|key| SETTINGS.iter().all(|setting| setting.key != *key)) {
-        None => Ok(()),
-        Some(unknown) => {
-            let keys = SETTINGS.map(|setting| format!("`{}`", setting.key)).join(", ");
-            Err(format!("unknown field `{unknown}`, expected one of {keys}"))
-        }
-    }
-}
-
 impl Settings {
     /// Returns the settings of an application. The environment takes precedence over the file's settings for this
-    /// application, those over the file's settings for all, and those over the defaults. Mistakes are returned as
-    /// errors, and change nothing.
+    /// application, those over the file's settings for all, and those over the defaults. A section or a variable with a
+    /// mistake is returned as an error, and changes nothing.
     pub fn of(application: &str) -> (Settings, Vec<SettingsError>) {
-        Settings::resolve(application, file(), variable)
+        Settings::resolve(application, path().and_then(|path| read(&path)), variable)
     }
 
     fn resolve(
         application: &str,
-        file: Option<SettingsFile>,
+        file: Option<Result<Vec<Source>, SettingsError>>,
         environment: impl Fn(&str) -> Option<OsString>,
     ) -> (Settings, Vec<SettingsError>) {
-        let mut settings = Settings::default();
-        let mut errors = Vec::new();
-        if let Some((path, text)) = file {
-            match text.and_then(|text| read_file(&text, application)) {
-                Ok(sections) => {
-                    let all = path.display().to_string();
-                    let places = [all.clone(), format!("{all}, [application.{application}]")];
-                    let in_file = |section: &Table, setting: &Setting| match section.get(setting.key)? {
-                        Value::String(text) => Some(text.clone()),
-                        other => Some(other.to_string()),
-                    };
-                    for (section, place) in sections.iter().zip(&places) {
-                        for setting in &SETTINGS {
-                            let value = in_file(section, setting);
-                            let chosen =
-                                value.map(|value| setting.choose(&mut settings, &value, place, setting.key));
-                            errors.extend(chosen.and_then(Result::err));
-                        }
-                    }
-                }
-                Err(reason) => errors.push(SettingsError::File { path, reason }),
+        let (mut settings, mut values, mut errors) = (Settings::default(), Table::new(), Vec::new());
+        let sections = file.unwrap_or(Ok(Vec::new())).unwrap_or_else(|error| {
+            errors.push(error);
+            Vec::new()
+        });
+        let is_meant = |source: &Source| source.application.as_ref().is_none_or(|name| name == application);
+        for source in sections.into_iter().filter(is_meant).chain(variables(environment)) {
+            let mut all = values.clone();
+            all.extend(source.values);
+            match Settings::deserialize(all.clone()) {
+                Ok(read) => (settings, values) = (read, all),
+                Err(error) => errors.push(SettingsError::new(source.place, error)),
             }
-        }
-        let mut from_environment = |setting: &Setting| {
-            let name = setting.variable();
-            if let Some(value) = environment(&name) {
-                let value = value.to_string_lossy();
-                errors.extend(setting.choose(&mut settings, &value, VARIABLES, &name).err());
-            }
-        };
-        SETTINGS.iter().for_each(&mut from_environment);
-        #[cfg(feature = "capture")]
-        {
-            from_environment(&TIME);
-            settings.capture = environment("YORO_LAYER_CAPTURE").map(PathBuf::from);
         }
         (settings, errors)
-    }
-
-    /// Returns the time at which views and spaces are located, given the requested time.
-    pub fn time(&self, asked: sys::Time) -> sys::Time {
-        #[cfg(feature = "capture")]
-        if let Some(time) = self.time {
-            return sys::Time::from_nanos(time);
-        }
-        asked
-    }
-
-    /// True if pictures are taken.
-    pub fn captures(&self) -> bool {
-        #[cfg(feature = "capture")]
-        return self.capture.is_some();
-        #[cfg(not(feature = "capture"))]
-        false
-    }
-
-    /// Returns the usage of swapchains whose images the layer reads.
-    pub fn usage_to_read(&self) -> sys::SwapchainUsageFlags {
-        let sampled = sys::SwapchainUsageFlags::SAMPLED;
-        if self.captures() { sampled | sys::SwapchainUsageFlags::TRANSFER_SRC } else { sampled }
     }
 }
 
@@ -370,33 +234,29 @@ impl Settings {
 mod tests {
     use super::*;
 
-    fn resolve(file: &str, environment: &[(&str, &str)]) -> (Settings, Vec<String>) {
-        let file = Some((PathBuf::from("/c/yoro/layer.toml"), Ok(file.to_owned())));
-        let (settings, errors) = Settings::resolve("hello", file, |name| {
-            environment.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).into())
-        });
+    fn environment(variables: &[(&str, &str)]) -> impl Fn(&str) -> Option<OsString> {
+        |name| variables.iter().find(|(key, _)| *key == name).map(|(_, value)| value.into())
+    }
+
+    fn resolve(file: &str, variables: &[(&str, &str)]) -> (Settings, Vec<String>) {
+        let file = sections(Path::new("/c/yoro/layer.toml"), file);
+        let (settings, errors) = Settings::resolve("hello", Some(file), environment(variables));
         (settings, errors.iter().map(ToString::to_string).collect())
     }
 
-    /// The table in docs/openxr-layer.md has the rows of [`SETTINGS`], and no others.
+    /// The rows of the table are the keys, and have the defaults.
     #[test]
-    fn the_document_has_the_table_of_settings() {
-        let rows = SETTINGS.map(|Setting { key, values, default, help, .. }| {
-            format!("| `{key}` | {values} | `{default}` | {help} |\n")
-        });
-        let table = format!("| key | values | default | |\n|---|---|---|---|\n{}\n", rows.concat());
+    fn the_document_has_a_row_for_every_setting() {
         let document = include_str!("../../../../docs/openxr-layer.md");
-        assert!(document.contains(&table), "docs/openxr-layer.md must have this table:\n{table}");
-    }
-
-    #[test]
-    fn every_default_is_a_value_of_its_setting() {
-        for setting in SETTINGS {
-            assert!((setting.set)(&mut Settings::default(), setting.default).is_some(), "{}", setting.key);
-        }
-        let Settings { offer, dominant, guard_band, shrink, .. } = Settings::default();
-        assert_eq!((offer, dominant), (OfferedAs::First, Eye::Right));
-        assert_eq!((guard_band, shrink), (GuardBand::Distance(1.0), false));
+        let (_, table) = document.split_once("| key | values | default | |\n|---|---|---|---|\n").unwrap();
+        let rows: Vec<Vec<&str>> = table
+            .lines()
+            .map_while(|row| row.strip_prefix("| `"))
+            .map(|row| row.split(" | ").map(|cell| cell.trim_matches('`')).collect())
+            .collect();
+        assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), KEYS);
+        let defaults: Vec<_> = rows.iter().map(|row| format!("{} = {:?}\n", row[0], row[2])).collect();
+        assert_eq!(resolve(&defaults.concat(), &[]), (Settings::default(), vec![]));
     }
 
     #[test]
@@ -412,37 +272,55 @@ mod tests {
             resolve(file, &[("YORO_LAYER_OFFER", "first"), ("YORO_LAYER_GUARD_BAND", "none")]);
         assert_eq!((settings.offer, settings.guard_band), (OfferedAs::First, GuardBand::None));
         assert_eq!(resolve("", &[]).0, Settings::default());
-    }
-
-    #[test]
-    fn mistakes_are_one_sentence_each_and_change_nothing() {
-        let (settings, errors) = resolve(
-            "offer = 'mono'\nguard_band = true",
-            &[("YORO_LAYER_DOMINANT", "middle"), ("YORO_LAYER_TIME", "0")],
-        );
-        assert_eq!(settings, Settings::default());
-        assert_eq!(
-            errors,
-            [
-                "/c/yoro/layer.toml: offer is \"mono\"; give only, first, last or off",
-                "/c/yoro/layer.toml: guard_band is \"true\"; give none, pixels such as 40px, or metres such as 1.0",
-                "the environment: YORO_LAYER_DOMINANT is \"middle\"; give left or right",
-                "the environment: YORO_LAYER_TIME is \"0\"; give nanoseconds, more than 0",
-            ]
-        );
         // A number needs no quotes.
         for (number, metres) in [("2.5", 2.5), ("1.0", 1.0), ("3", 3.0)] {
             let (settings, errors) = resolve(&format!("guard_band = {number}"), &[]);
             assert_eq!((settings.guard_band, errors), (GuardBand::Distance(metres), vec![]), "{number}");
         }
+    }
+
+    #[test]
+    fn mistakes_are_one_sentence_each_and_change_nothing() {
+        let file = "dominant = 'left'\n[application.hello]\noffer = 'mono'\nguard_band = 'none'\n";
+        let variables = [
+            ("YORO_LAYER_DOMINANT", "middle"),
+            ("YORO_LAYER_GUARD_BAND", "auto"),
+            ("YORO_LAYER_SHRINK", "1"),
+            ("YORO_LAYER_OFFER", "last"),
+        ];
+        let (settings, errors) = resolve(file, &variables);
+        let right = Settings { dominant: Eye::Left, offer: OfferedAs::Last, ..Settings::default() };
+        assert_eq!(settings, right);
+        let remedy = "give none, pixels such as 40px, or metres such as 1.0";
+        let hello = "/c/yoro/layer.toml, [application.hello]: unknown variant `mono`, \
+                     expected one of `only`, `first`, `last`, `off` in `offer`; mend it or remove it";
+        let others = [
+            "YORO_LAYER_DOMINANT: unknown variant `middle`, expected `left` or `right` in `dominant`"
+                .to_owned(),
+            format!("YORO_LAYER_GUARD_BAND: \"auto\" is no guard band: {remedy} in `guard_band`"),
+            "YORO_LAYER_SHRINK: unknown variant `1`, expected `on` or `off` in `shrink`".to_owned(),
+        ];
+        let others = others.map(|error| format!("{error}; mend it or remove it"));
+        assert_eq!(errors, [&[hello.to_owned()], &others[..]].concat());
+    }
+
+    #[test]
+    fn a_mistake_in_the_file_names_its_section() {
+        for (file, what) in [
+            ("ofer = 'only'", "/c/yoro/layer.toml: unknown field `ofer`"),
+            ("offer =", "/c/yoro/layer.toml: "),
+            ("application = 1", "/c/yoro/layer.toml: "),
+            ("guard_band = true", "/c/yoro/layer.toml: \"true\" is no guard band: give none"),
+        ] {
+            let (settings, errors) = resolve(file, &[]);
+            assert_eq!(settings, Settings::default());
+            assert!(errors.len() == 1 && errors[0].starts_with(what), "{errors:?}");
+            assert!(errors[0].ends_with("; mend it or remove it") && !errors[0].contains('\n'), "{errors:?}");
+        }
         let other = "dominant = 'left'\n[application.other]\ndominant = 'middle'";
         assert!(resolve(other, &[]).1.is_empty());
-        let mistakes = mistakes_in(&Some(("/c/yoro/layer.toml".into(), Ok(other.to_owned()))));
-        let mistakes: Vec<_> = mistakes.iter().map(ToString::to_string).collect();
-        let want = "/c/yoro/layer.toml, [application.other]: dominant is \"middle\"; give left or right";
-        assert_eq!(mistakes, [want]);
-        let (settings, errors) = resolve("ofer = 'only'", &[]);
-        assert_eq!(settings, Settings::default());
-        assert!(errors[0].starts_with("/c/yoro/layer.toml: unknown field `ofer`"), "{errors:?}");
+        let mistakes = mistakes_in(Some(sections(Path::new("/c/yoro/layer.toml"), other)), environment(&[]));
+        let [mistake] = &mistakes[..] else { panic!("{mistakes:?}") };
+        assert_eq!(mistake.place, "/c/yoro/layer.toml, [application.other]");
     }
 }

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use yoro::eyes::Warp;
+
 use crate::geometry::Rectangle;
 use crate::reason::Reason;
 
@@ -23,15 +25,13 @@ pub struct Image {
     pub layers: u32,
 }
 
-/// The synthesis of one image: of colour by a [`Warp`](yoro::eyes::Warp), of motion vectors by a
-/// [`MotionWarp`](yoro::eyes::MotionWarp). Rectangles count from row 0 of the image: the top in Vulkan, the bottom in OpenGL.
-pub struct Job<'a, W> {
-    /// Colour or vectors.
+/// The synthesis of one image. Rectangles count from row 0 of the image: the top in Vulkan, the bottom in OpenGL.
+pub struct Job<'a> {
     pub color: Image,
     pub depth: Image,
     /// The part of both images that is read.
     pub source: Rectangle,
-    pub warp: &'a W,
+    pub warp: &'a Warp,
     /// The image that is drawn to, beginning at its first column and row.
     pub target: Image,
     /// Its depth, stored like the source's.
@@ -39,7 +39,7 @@ pub struct Job<'a, W> {
 }
 
 /// A synthesis pipeline of a session, and everything that it needs.
-pub trait Synthesizer<W>: Send {
+pub trait Synthesizer: Send {
     /// Submits the synthesis of one frame to the GPU, after the application's own work, without waiting for it. Returns
     /// the GPU time of an earlier frame once it is known.
     ///
@@ -49,18 +49,8 @@ pub trait Synthesizer<W>: Send {
     /// # Safety
     /// The images belong to the session, and the runtime does not own them at the moment. In Vulkan the source's images
     /// are in attachment layouts, and the target's are left in them. No other thread uses the queue or the context.
-    unsafe fn synthesize(&mut self, job: &Job<W>) -> Result<Option<Duration>, Reason>;
+    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason>;
 
     /// Forgets the images of a swapchain, which are about to be destroyed.
     fn forget(&mut self, images: &[u64]);
-
-    /// Reads a rectangle of a colour image as red, green and blue, with rows from the top. Waits for the result.
-    ///
-    /// # Errors
-    /// The reason why it cannot be read.
-    ///
-    /// # Safety
-    /// As for [`Synthesizer::synthesize`].
-    #[cfg(feature = "capture")]
-    unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String>;
 }

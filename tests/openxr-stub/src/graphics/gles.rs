@@ -4,11 +4,12 @@ use std::ffi::{CStr, CString, c_void};
 use std::num::NonZeroU32;
 use std::ptr;
 
+use glam::Vec3;
 use glow::HasContext as _;
 use openxr_sys as sys;
 use sys::Result as Code;
 
-use super::{Graphics, Texture, depth};
+use super::{Graphics, Texture};
 use crate::script::POISON;
 use crate::world::{Refusal, forbid_if};
 
@@ -112,11 +113,12 @@ impl Gles {
         })
     }
 
-    /// Runs `work` with a layer of a texture as the framebuffer's colour. Restores the application's state.
+    /// Runs `work` with a layer of a texture in a framebuffer. Restores the application's state.
     fn with_layer<T>(
         &mut self,
         texture: Texture,
         layer: u32,
+        attachment: u32,
         work: impl Fn(&glow::Context) -> T,
     ) -> Option<T> {
         if !self.is_current() {
@@ -129,12 +131,11 @@ impl Gles {
             let draw = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
             let framebuffer = gl.create_framebuffer().ok()?;
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
-            let color = glow::COLOR_ATTACHMENT0;
             let raw = name(texture);
             if texture.layers > 1 {
-                gl.framebuffer_texture_layer(glow::FRAMEBUFFER, color, raw, 0, layer as i32);
+                gl.framebuffer_texture_layer(glow::FRAMEBUFFER, attachment, raw, 0, layer as i32);
             } else {
-                gl.framebuffer_texture_2d(glow::FRAMEBUFFER, color, glow::TEXTURE_2D, raw, 0);
+                gl.framebuffer_texture_2d(glow::FRAMEBUFFER, attachment, glow::TEXTURE_2D, raw, 0);
             }
             let complete = gl.check_framebuffer_status(glow::FRAMEBUFFER) == glow::FRAMEBUFFER_COMPLETE;
             let result = complete.then(|| work(gl));
@@ -146,10 +147,11 @@ impl Gles {
     }
 }
 
-/// Reads a rectangle of the bound framebuffer as RGBA of a type with this many bytes a pixel.
-pub(super) fn read_pixels(
+/// Reads a rectangle of the bound framebuffer in a format and of a type, with this many bytes a pixel.
+fn read_pixels(
     gl: &glow::Context,
     [x, y, width, height]: [i32; 4],
+    format: u32,
     kind: u32,
     bytes: i32,
 ) -> Vec<u8> {
@@ -165,7 +167,7 @@ pub(super) fn read_pixels(
             gl.pixel_store_i32(setting, value);
         }
         let target = glow::PixelPackData::Slice(Some(&mut pixels));
-        gl.read_pixels(x, y, width, height, glow::RGBA, kind, target);
+        gl.read_pixels(x, y, width, height, format, kind, target);
         for (setting, value) in settings.into_iter().zip(before) {
             gl.pixel_store_i32(setting, value);
         }
@@ -175,7 +177,7 @@ pub(super) fn read_pixels(
 }
 
 /// Returns the texture's name in GL.
-pub(super) fn name(texture: Texture) -> Option<glow::Texture> {
+fn name(texture: Texture) -> Option<glow::Texture> {
     u32::try_from(texture.raw).ok().and_then(NonZeroU32::new).map(glow::NativeTexture)
 }
 
@@ -232,7 +234,7 @@ impl Graphics for Gles {
 
     fn poison(&mut self, texture: Texture) {
         for layer in 0..texture.layers {
-            self.with_layer(texture, layer, |gl| {
+            self.with_layer(texture, layer, glow::COLOR_ATTACHMENT0, |gl| {
                 // SAFETY: plain GL calls; the state that restricts a clear is restored.
                 unsafe {
                     let scissor = gl.is_enabled(glow::SCISSOR_TEST);
@@ -250,29 +252,35 @@ impl Graphics for Gles {
     }
 
     fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
-        self.with_layer(texture, layer, |gl| read_pixels(gl, rect, glow::UNSIGNED_BYTE, 4))
+        self.with_layer(texture, layer, glow::COLOR_ATTACHMENT0, |gl| {
+            read_pixels(gl, rect, glow::RGBA, glow::UNSIGNED_BYTE, 4)
+        })
     }
 
-    fn read_numbers(
-        &mut self,
-        texture: Texture,
-        layer: u32,
-        rect: [i32; 4],
-        is_depth: bool,
-    ) -> Option<Vec<f32>> {
-        if !self.is_current() {
-            return None;
-        }
-        let bytes = if is_depth {
-            depth::read(self.gl(), texture, layer, rect)?
-        } else {
-            self.with_layer(texture, layer, |gl| read_pixels(gl, rect, glow::FLOAT, 16))?
-        };
-        let number = |four: &[u8]| f32::from_ne_bytes([four[0], four[1], four[2], four[3]]);
-        Some(bytes.chunks_exact(4).map(number).collect())
+    fn read_vectors(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<Vec3>> {
+        let bytes = self.with_layer(texture, layer, glow::COLOR_ATTACHMENT0, |gl| {
+            read_pixels(gl, rect, glow::RGBA, glow::FLOAT, 16)
+        })?;
+        Some(floats(&bytes).chunks_exact(4).map(Vec3::from_slice).collect())
     }
 
-    fn rows_from_bottom(&self) -> bool {
-        true
+    /// Uses GL_NV_read_depth, which Mesa has. It reads depth of floats as such, and any other as unsigned integers.
+    fn read_depth(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<f32>> {
+        self.with_layer(texture, layer, glow::DEPTH_ATTACHMENT, |gl| {
+            let read = |kind: u32| {
+                let bytes = read_pixels(gl, rect, glow::DEPTH_COMPONENT, kind, 4);
+                // SAFETY: a query.
+                (unsafe { gl.get_error() } == glow::NO_ERROR).then_some(bytes)
+            };
+            let part = |four: &[u8]| {
+                u32::from_ne_bytes([four[0], four[1], four[2], four[3]]) as f32 / u32::MAX as f32
+            };
+            let parts = |bytes: Vec<u8>| bytes.chunks_exact(4).map(part).collect();
+            read(glow::UNSIGNED_INT).map(parts).or_else(|| Some(floats(&read(glow::FLOAT)?)))
+        })?
     }
+}
+
+fn floats(bytes: &[u8]) -> Vec<f32> {
+    bytes.chunks_exact(4).map(|four| f32::from_ne_bytes([four[0], four[1], four[2], four[3]])).collect()
 }

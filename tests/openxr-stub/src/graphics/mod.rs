@@ -1,11 +1,11 @@
 //! The application's graphics: OpenGL ES in its context, or Vulkan on its device.
 
-mod depth;
 mod gles;
 mod vulkan;
 
 use std::ffi::c_void;
 
+use glam::Vec3;
 use openxr_sys as sys;
 use sys::Result as Code;
 
@@ -45,18 +45,15 @@ pub trait Graphics: Send {
     /// Reads a rectangle of stored colour values as RGBA, beginning with the lowest row.
     fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>>;
 
-    /// Reads a rectangle of floats or of depth as four numbers for each pixel, beginning with the lowest row. Depth is
-    /// the first of them.
-    fn read_numbers(
-        &mut self,
-        texture: Texture,
-        layer: u32,
-        rect: [i32; 4],
-        is_depth: bool,
-    ) -> Option<Vec<f32>>;
+    /// Reads a rectangle of motion vectors, beginning with the lowest row. No test submits them on Vulkan.
+    fn read_vectors(&mut self, _: Texture, _: u32, _rect: [i32; 4]) -> Option<Vec<Vec3>> {
+        None
+    }
 
-    /// True if row 0 of an image is its lowest one, and y of NDC grows with the rows upwards.
-    fn rows_from_bottom(&self) -> bool;
+    /// Reads a rectangle of the depth of motion vectors, which are floats, beginning with the lowest row.
+    fn read_depth(&mut self, _: Texture, _: u32, _rect: [i32; 4]) -> Option<Vec<f32>> {
+        None
+    }
 }
 
 /// Returns the graphics binding in a chain of structures, and its name.

@@ -6,7 +6,6 @@ use std::ffi::c_void;
 
 use ash::vk;
 use ash::vk::Handle as _;
-use half::f16;
 use openxr_sys as sys;
 use sys::Result as Code;
 
@@ -121,10 +120,10 @@ impl Vulkan {
         }
     }
 
-    /// Copies a rectangle with this many bytes per pixel to the host. Returns its rows from the lowest to the top one.
-    fn copy(&self, texture: Texture, layer: u32, rect: [i32; 4], bytes: usize) -> Option<Vec<u8>> {
+    /// Copies a rectangle with four bytes per pixel to the host. Returns its rows from the lowest to the top one.
+    fn copy(&self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
         let [x, y, width, height] = rect;
-        let row = width as usize * bytes;
+        let row = width as usize * 4;
         let image = self.images.get(&texture.raw)?;
         let size = row as u64 * height as u64;
         let info = vk::BufferCreateInfo::default().size(size).usage(vk::BufferUsageFlags::TRANSFER_DST);
@@ -263,30 +262,11 @@ impl Graphics for Vulkan {
             vk::Format::B8G8R8A8_UNORM | vk::Format::B8G8R8A8_SRGB => true,
             _ => return None,
         };
-        let mut pixels = self.copy(texture, layer, rect, 4)?;
+        let mut pixels = self.copy(texture, layer, rect)?;
         if swapped {
             pixels.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
         }
         Some(pixels)
-    }
-
-    fn read_numbers(&mut self, texture: Texture, layer: u32, rect: [i32; 4], _: bool) -> Option<Vec<f32>> {
-        type Numbers = fn(&[u8]) -> [f32; 4];
-        let (size, numbers): (usize, Numbers) = match self.images.get(&texture.raw)?.format {
-            vk::Format::R16G16B16A16_SFLOAT => {
-                (8, |texel| [0, 2, 4, 6].map(|i| f16::from_ne_bytes([texel[i], texel[i + 1]]).to_f32()))
-            }
-            vk::Format::D32_SFLOAT => {
-                (4, |texel| [f32::from_ne_bytes([texel[0], texel[1], texel[2], texel[3]]), 0.0, 0.0, 0.0])
-            }
-            _ => return None,
-        };
-        let bytes = self.copy(texture, layer, rect, size)?;
-        Some(bytes.chunks_exact(size).flat_map(numbers).collect())
-    }
-
-    fn rows_from_bottom(&self) -> bool {
-        false
     }
 }
 

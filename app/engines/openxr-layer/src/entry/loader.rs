@@ -8,7 +8,7 @@ use super::{get_instance_proc_addr, sessions, without_panic};
 use crate::dispatch::{Dispatch, XrResult, check};
 use crate::instance::{Instance, text};
 use crate::settings::{OfferedAs, Settings};
-use crate::{log, objects, say};
+use crate::{log, log_line, objects};
 
 const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
 const GRAPHICS: [&CStr; 4] =
@@ -96,14 +96,14 @@ unsafe fn create_instance(
         let name = text(&info.application_info.application_name);
         let (settings, errors) = Settings::of(&name);
         for error in errors {
-            say(format_args!("{error}"));
+            log_line(format_args!("{error}"));
         }
         let graphics = GRAPHICS.into_iter().any(enables);
         let left_alone = settings.offer == OfferedAs::Off;
         if left_alone {
-            say(format_args!("{name}: passed through: its settings say offer = off"));
+            log_line(format_args!("{name}: passed through: its settings say offer = off"));
         } else if !graphics {
-            say(format_args!("{name}: passed through: it uses neither Vulkan nor OpenGL"));
+            log_line(format_args!("{name}: passed through: it uses neither Vulkan nor OpenGL"));
         }
         let serves = graphics && !left_alone;
         objects::add_instance(Instance::new(handle, dispatch, settings, name, serves, takes_depth));

@@ -148,16 +148,6 @@ fn own_function(name: &CStr, instance: &Instance) -> Option<pfn::VoidFunction> {
             let function: pfn::DestroyInstance = loader::destroy_instance;
             return Some(std::mem::transmute::<pfn::DestroyInstance, pfn::VoidFunction>(function));
         }
-        #[cfg(feature = "capture")]
-        if name == c"xrCreateReferenceSpace" && instance.settings.time.is_some() {
-            let function: pfn::CreateReferenceSpace = views::create_reference_space;
-            return Some(std::mem::transmute::<pfn::CreateReferenceSpace, pfn::VoidFunction>(function));
-        }
-        #[cfg(feature = "capture")]
-        if name == c"xrLocateSpace" && instance.settings.time.is_some() {
-            let function: pfn::LocateSpace = views::locate_space;
-            return Some(std::mem::transmute::<pfn::LocateSpace, pfn::VoidFunction>(function));
-        }
     }
     if instance.serves { intercepted(name) } else { None }
 }

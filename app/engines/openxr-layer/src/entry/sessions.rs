@@ -11,7 +11,7 @@ use crate::dispatch::{XrResult, check};
 use crate::instance::Instance;
 use crate::objects::{self, LiveSession};
 use crate::session::Session;
-use crate::{frame, lock, say};
+use crate::{frame, lock, log_line};
 
 pub unsafe fn create(
     instance: &Arc<Instance>,
@@ -51,14 +51,14 @@ pub unsafe fn begin(live: &LiveSession, info: *const sys::SessionBeginInfo) -> X
             let result = check(begin(session.handle, info))?;
             session.begin(if kind == two { 2 } else { 4 });
             let images = if kind == two { "a tiny image" } else { "two tiny images" };
-            say(format_args!("{name}: renders {images} for the {other} eye, which is synthesized"));
+            log_line(format_args!("{name}: renders {images} for the {other} eye, which is synthesized"));
             return Ok(result);
         }
         if kind != ViewsOf::PRIMARY_MONO || !session.offers_mono {
             if kind == ViewsOf::PRIMARY_MONO {
-                say(format_args!("{name}: passed through: the system itself has one view, not two"));
+                log_line(format_args!("{name}: passed through: the system itself has one view, not two"));
             } else {
-                say(format_args!(
+                log_line(format_args!(
                     "{name}: passed through: it begins its session with {kind:?}, not with one view"
                 ));
             }
@@ -69,7 +69,7 @@ pub unsafe fn begin(live: &LiveSession, info: *const sys::SessionBeginInfo) -> X
             sys::SessionBeginInfo { primary_view_configuration_type: ViewsOf::PRIMARY_STEREO, ..*info };
         let result = check(begin(session.handle, &stereo))?;
         session.begin(1);
-        say(format_args!("{name}: renders one view; the {other} eye is synthesized"));
+        log_line(format_args!("{name}: renders one view; the {other} eye is synthesized"));
         Ok(result)
     }
 }

@@ -44,7 +44,7 @@ pub unsafe fn create(
         let mut result = sys::Result::ERROR_FEATURE_UNSUPPORTED;
         let mut content = None;
         if let Some(binding) = session.binding.filter(|_| readable) {
-            let usage_flags = asked.usage_flags | session.instance.settings.usage_to_read();
+            let usage_flags = asked.usage_flags | sys::SwapchainUsageFlags::SAMPLED;
             let more = sys::SwapchainCreateInfo { usage_flags, ..asked };
             result = (next.create_swapchain)(session.handle, &more, created);
             if check(result).is_ok() {

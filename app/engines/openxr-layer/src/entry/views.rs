@@ -8,7 +8,7 @@ use sys::ViewConfigurationType as ViewsOf;
 use crate::dispatch::{XrResult, check};
 use crate::frame::projection;
 use crate::geometry::{xr_fov, xr_pose};
-use crate::instance::{Instance, Part};
+use crate::instance::{Instance, ViewRole};
 use crate::objects::{self, LiveSession};
 
 /// Answers a call that asks for an array: writes its length and, if the capacity is not 0, its elements.
@@ -81,11 +81,11 @@ pub unsafe fn enumerate_views(
             ViewsOf::PRIMARY_MONO if instance.offers(system) => vec![instance.view(system, chain(0, 1))?],
             ViewsOf::PRIMARY_STEREO if instance.settings.shrink && instance.offers(system) => {
                 let chains = [0, 1].map(|i| chain(i, 2));
-                instance.shrunk_views(system, kind, &[Part::Eyes], chains)?.to_vec()
+                instance.shrunk_views(system, kind, &[ViewRole::Eyes], chains)?.to_vec()
             }
             ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET if instance.shrinks_four(system) => {
                 let chains = [0, 1, 2, 3].map(|i| chain(i, 4));
-                instance.shrunk_views(system, kind, &Part::OF_FOUR, chains)?.to_vec()
+                instance.shrunk_views(system, kind, &ViewRole::OF_FOUR, chains)?.to_vec()
             }
             _ => {
                 let next = instance.next.enumerate_view_configuration_views;
@@ -214,7 +214,6 @@ pub unsafe fn locate(
     // SAFETY: the application's arguments.
     unsafe {
         let mut asked = *info;
-        asked.display_time = settings.time(asked.display_time);
         if asked.view_configuration_type != ViewsOf::PRIMARY_MONO || !session.answers_mono() {
             let next = session.instance.next.locate_views;
             let result = check(next(session.handle, &asked, state, capacity, count, views))?;
@@ -244,42 +243,4 @@ pub unsafe fn locate(
         let view = sys::View { ty: sys::View::TYPE, next, pose: xr_pose(pose), fov: xr_fov(frustum) };
         answer(&[view], capacity, count, views)
     }
-}
-
-/// Implements xrCreateReferenceSpace in a world that stands still. The origin of LOCAL depends on when the session
-/// begins, while that of STAGE is fixed.
-#[cfg(feature = "capture")]
-pub unsafe extern "system" fn create_reference_space(
-    session: sys::Session,
-    info: *const sys::ReferenceSpaceCreateInfo,
-    space: *mut sys::Space,
-) -> sys::Result {
-    super::without_panic(|| {
-        let instance = objects::any_instance().ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
-        // SAFETY: the application's own arguments.
-        unsafe {
-            let mut info = *info;
-            if info.reference_space_type == sys::ReferenceSpaceType::LOCAL {
-                info.reference_space_type = sys::ReferenceSpaceType::STAGE;
-            }
-            Ok((instance.next.create_reference_space)(session, &info, space))
-        }
-    })
-}
-
-/// Implements xrLocateSpace at the time that the settings for tests name.
-#[cfg(feature = "capture")]
-pub unsafe extern "system" fn locate_space(
-    space: sys::Space,
-    base: sys::Space,
-    time: sys::Time,
-    location: *mut sys::SpaceLocation,
-) -> sys::Result {
-    super::without_panic(|| {
-        // The layer does not keep spaces, but a test has only one instance.
-        let instance = objects::any_instance().ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
-        let time = instance.settings.time(time);
-        // SAFETY: the application's own arguments.
-        Ok(unsafe { (instance.next.locate_space)(space, base, time, location) })
-    })
 }

@@ -8,6 +8,7 @@ use crate::geometry::Rectangle;
 use crate::reason::Reason;
 use crate::structures;
 use crate::swapchain::{Content, Swapchain};
+use crate::synthesizer::Image;
 
 /// The application's layers of a frame.
 pub type Layers<'a> = &'a [*const sys::CompositionLayerBaseHeader];
@@ -85,18 +86,26 @@ pub unsafe fn is_upside_down(layer: &sys::CompositionLayerProjection) -> bool {
     layout.is_some_and(|layout| layout.flags.contains(sys::CompositionLayerImageLayoutFlagsFB::VERTICAL_FLIP))
 }
 
-/// Returns the images of a swapchain and the one that the application released last. `what` is colour or depth.
+/// A submitted image that the runtime does not own yet.
+pub struct Held<'a> {
+    /// All images of its swapchain.
+    pub content: &'a Content,
+    pub image: Image,
+}
+
+/// Returns the image that the application released last to a swapchain. `what` is colour or depth.
 ///
 /// # Errors
 /// [`Reason::Unreadable`], and [`Reason::Old`] if the runtime already owns the image.
 pub fn held<'a>(
     swapchains: &'a [Arc<Swapchain>],
-    handle: sys::Swapchain,
+    part: &sys::SwapchainSubImage,
     what: &'static str,
-) -> Result<(&'a Content, u64), Reason> {
-    let swapchain = swapchains.iter().find(|swapchain| swapchain.handle == handle);
+) -> Result<Held<'a>, Reason> {
+    let swapchain = swapchains.iter().find(|swapchain| swapchain.handle == part.swapchain);
     let swapchain = swapchain.filter(|known| known.content.is_some()).ok_or(Reason::Unreadable(what))?;
-    swapchain.held().ok_or(Reason::Old(what))
+    let (content, image) = swapchain.held().ok_or(Reason::Old(what))?;
+    Ok(Held { content, image: content.image(image, part.image_array_index) })
 }
 
 /// Returns the rectangle of a sub-image.

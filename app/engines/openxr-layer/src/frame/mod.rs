@@ -1,16 +1,13 @@
-//! xrEndFrame: turns a projection layer of one view into one of two, and one of which half of the views are tiny into one
-//! of whole views.
+//! xrEndFrame: turns a projection layer of one view into one of two, and one of which half of the views are tiny into
+//! one of whole views.
 
-#[cfg(feature = "capture")]
-mod capture;
 mod chain;
-mod level;
-mod output;
+mod rendered_view;
 mod rewrite;
 mod statistics;
 mod synthesized;
 mod target;
-mod vectors;
+mod targets;
 
 use std::collections::HashSet;
 use std::mem::Discriminant;
@@ -28,28 +25,20 @@ use crate::reason::Reason;
 use crate::session::Session;
 use crate::swapchain::{Content, Swapchain};
 use crate::synthesizer::Image;
-use crate::{lock, say};
+use crate::{lock, log_line};
 pub use chain::projection;
 use chain::{Layers, held, rectangle};
-use level::Level;
+use rendered_view::RenderedView;
 use rewrite::{Eyes, Rewritten};
 use statistics::{Report, Statistics};
-
-/// What the log says if motion vectors do not go on to the runtime.
-const NO_VECTORS: &str = "shown without its motion vectors";
-
-/// The number of frames in a row after which a runtime that refuses motion vectors gets no more.
-const MAX_REFUSALS: u32 = 3;
 
 /// The state that xrEndFrame keeps between frames.
 #[derive(Default)]
 pub struct Frames {
     /// One for each rendered view, in the order of the views.
-    levels: [Level; 2],
-    /// The number of frames in a row whose motion vectors the runtime refused.
-    refusals: u32,
-    /// The kinds of reasons that have been logged, with what they were reasons for.
-    told: HashSet<(&'static str, Discriminant<Reason>)>,
+    views: [RenderedView; 2],
+    /// The kinds of reasons that have been logged.
+    logged: HashSet<Discriminant<Reason>>,
     statistics: Statistics,
     report: Report,
 }
@@ -129,17 +118,6 @@ pub unsafe fn end_frame(
         }
     };
     let mut result = end(&mut rewritten);
-    if rewritten.has_motions() {
-        let reason = Reason::Runtime("xrEndFrame", result);
-        let mut refused = is_about_layers(result);
-        if refused {
-            rewritten.drop_motions();
-            result = end(&mut rewritten);
-            // If it still refuses, vectors were not the reason.
-            refused = !is_about_layers(result);
-        }
-        lock(frames).showed_vectors(session, refused.then_some(reason));
-    }
     if synthesized && is_about_layers(result) {
         lock(frames).refused(session, Reason::Runtime("xrEndFrame", result));
         let mut rewritten = Rewritten::default();
@@ -178,13 +156,13 @@ unsafe fn rendered_views<'a>(
         impl Iterator<Item = &'a sys::CompositionLayerProjectionView> + Clone,
     ),
 > {
-    let (views, parts) = (session.views(), session.parts().len());
+    let (views, count) = (session.views(), session.roles().len());
     let first = if views == 1 { 0 } else { session.instance.settings.dominant.index() };
     layers.iter().filter_map(move |&layer| {
         // SAFETY: the application's layers. `views` is not 0 in a session that is rewritten.
         let layer = unsafe { projection(layer, views) }?;
         // SAFETY: the layer has this many views.
-        Some((layer, (0..parts).map(move |part| unsafe { &*layer.views.add(first + 2 * part) })))
+        Some((layer, (0..count).map(move |i| unsafe { &*layer.views.add(first + 2 * i) })))
     })
 }
 
@@ -195,26 +173,14 @@ fn source<'a>(
     info: &'a sys::CompositionLayerDepthInfoKHR,
     upside_down: bool,
 ) -> Result<Source<'a>, Reason> {
-    let images = [&view.sub_image, &info.sub_image];
-    let (contents, images, part) = submitted_images(swapchains, images, ["colour", "depth"])?;
-    Ok(Source { view, info, contents, images, part, upside_down })
-}
-
-/// Returns two submitted images with their swapchains, and the rectangle, which is the same in both.
-fn submitted_images<'a>(
-    swapchains: &'a [Arc<Swapchain>],
-    [color, depth]: [&sys::SwapchainSubImage; 2],
-    whats: [&'static str; 2],
-) -> Result<([&'a Content; 2], [Image; 2], Rectangle), Reason> {
-    let contents =
-        [held(swapchains, color.swapchain, whats[0])?, held(swapchains, depth.swapchain, whats[1])?];
-    let part = rectangle(color, contents[0].0)?;
-    if rectangle(depth, contents[1].0)? != part || contents[0].0.size != contents[1].0.size {
-        return Err(Reason::Apart(whats[0], whats[1]));
+    let color = held(swapchains, &view.sub_image, "colour")?;
+    let depth = held(swapchains, &info.sub_image, "depth")?;
+    let part = rectangle(&view.sub_image, color.content)?;
+    if rectangle(&info.sub_image, depth.content)? != part || color.content.size != depth.content.size {
+        return Err(Reason::Apart);
     }
-    let [color, depth] = [(color, contents[0]), (depth, contents[1])]
-        .map(|(image, (content, held))| content.image(held, image.image_array_index));
-    Ok((contents.map(|(content, _)| content), [color, depth], part))
+    let (contents, images) = ([color.content, depth.content], [color.image, depth.image]);
+    Ok(Source { view, info, contents, images, part, upside_down })
 }
 
 /// Splits a submitted view into two eyes.
@@ -239,11 +205,6 @@ impl Frames {
         rewritten: &mut Rewritten,
     ) -> bool {
         if session.views() == 0 {
-            #[cfg(feature = "capture")]
-            if session.reads_images() && self.statistics.frames == capture::FRAME {
-                // SAFETY: the application's layers.
-                unsafe { capture::write_stereo(session, swapchains, layers) };
-            }
             return false;
         }
         let mut done = false;
@@ -252,10 +213,11 @@ impl Frames {
             let eyes: Result<SmallVec<[Eyes; 2]>, Reason> = if done {
                 Err(Reason::Another)
             } else {
-                let parts = views.clone().enumerate();
                 // SAFETY: submitted views.
-                let each = parts
-                    .map(|(part, view)| unsafe { self.synthesize(session, part, swapchains, layer, view) });
+                let each = views
+                    .clone()
+                    .enumerate()
+                    .map(|(i, view)| unsafe { self.synthesize(session, i, swapchains, layer, view) });
                 // All or none: the views of four that belong to one eye have one pose.
                 catch_unwind(AssertUnwindSafe(|| each.collect())).unwrap_or(Err(Reason::Panic))
             };
@@ -266,7 +228,7 @@ impl Frames {
                     eyes
                 }
                 Err(reason) => {
-                    self.fall_back(session, reason);
+                    self.log_fallback(session, reason);
                     views.map(Eyes::same).collect()
                 }
             };
@@ -287,72 +249,46 @@ impl Frames {
         layer: &sys::CompositionLayerProjection,
         view: &sys::CompositionLayerProjectionView,
     ) -> Result<Eyes, Reason> {
-        let part = session.parts()[index];
+        let role = session.roles()[index];
         // SAFETY: same contract.
-        let synthesis = unsafe {
-            self.levels[index].synthesize(
-                session,
-                part,
-                swapchains,
-                layer,
-                view,
-                #[cfg(feature = "capture")]
-                (self.statistics.frames == capture::FRAME),
-            )
-        }?;
-        if let Some(time) = synthesis.time {
+        let synthesis = unsafe { self.views[index].synthesize(session, role, swapchains, layer, view) }?;
+        if let Some(time) = synthesis.gpu_time {
             // Both syntheses of four views count as one.
-            self.statistics.gpu += time;
-            self.statistics.timed += u64::from(index == 0);
-        }
-        if let Some(reason) = synthesis.no_vectors {
-            self.tell(session, NO_VECTORS, reason);
+            self.statistics.gpu.sum += time;
+            self.statistics.gpu.frames += u64::from(index == 0);
         }
         Ok(synthesis.eyes)
     }
 
-    /// Counts a layer that is shown unchanged to both eyes.
-    fn fall_back(&mut self, session: &Session, reason: Reason) {
+    /// Counts a layer that is shown unchanged to both eyes, and logs each kind of reason once.
+    fn log_fallback(&mut self, session: &Session, reason: Reason) {
         self.statistics.fallbacks += 1;
-        self.tell(session, "the same image for both eyes", reason);
-    }
-
-    /// Logs each kind of reason once.
-    fn tell(&mut self, session: &Session, what: &'static str, reason: Reason) {
-        if self.told.insert((what, std::mem::discriminant(&reason))) {
-            say(format_args!("{}: {what}: {reason}", session.instance.application));
-        }
-    }
-
-    /// Notes whether the runtime took a frame's motion vectors. `refused` is the reason why it did not.
-    fn showed_vectors(&mut self, session: &Session, refused: Option<Reason>) {
-        self.refusals = if refused.is_some() { self.refusals + 1 } else { 0 };
-        if self.refusals == MAX_REFUSALS {
-            self.levels.iter_mut().for_each(|level| level.vectors.are_refused = true);
-        }
-        if let Some(reason) = refused {
-            self.tell(session, NO_VECTORS, reason);
+        if self.logged.insert(std::mem::discriminant(&reason)) {
+            log_line(format_args!(
+                "{}: the same image for both eyes: {reason}",
+                session.instance.application
+            ));
         }
     }
 
     /// Counts a synthesized layer that the runtime refused.
     fn refused(&mut self, session: &Session, reason: Reason) {
-        self.levels.iter_mut().for_each(|level| level.last = None);
+        self.views.iter_mut().for_each(|view| view.last = None);
         self.statistics.synthesized -= 1;
-        self.fall_back(session, reason);
+        self.log_fallback(session, reason);
     }
 
     /// Forgets images that are about to be destroyed.
     pub fn forget(&mut self, content: &Content) {
-        self.levels.iter_mut().for_each(|level| level.forget(content));
+        self.views.iter_mut().for_each(|view| view.forget(content));
     }
 
     /// Ends the frames of a session that is about to be destroyed. The runtime destroys its swapchains with it.
     pub fn end(&mut self, session: &Session) {
-        self.levels = Default::default();
+        self.views = Default::default();
         let Statistics { frames, synthesized, fallbacks, .. } = self.statistics;
         if session.views() > 0 {
-            say(format_args!(
+            log_line(format_args!(
                 "{}: session ended after {frames} frames: {synthesized} synthesized, {fallbacks} not",
                 session.instance.application
             ));

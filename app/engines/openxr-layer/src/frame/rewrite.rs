@@ -4,21 +4,18 @@ use openxr_sys as sys;
 use smallvec::SmallVec;
 
 use super::chain::{Layers, projection};
-use crate::motion::MotionInfo;
 
 /// Two views that replace one, and their depth if it is passed on to the runtime.
 pub struct Eyes {
     pub views: [sys::CompositionLayerProjectionView; 2],
     pub depths: Option<[sys::CompositionLayerDepthInfoKHR; 2]>,
-    /// Their motion vectors.
-    pub motions: Option<[MotionInfo; 2]>,
 }
 
 impl Eyes {
     /// Returns the same image for both eyes, without the structures chained to the view, which are meant for one eye.
     pub fn same(view: &sys::CompositionLayerProjectionView) -> Eyes {
         let view = sys::CompositionLayerProjectionView { next: std::ptr::null(), ..*view };
-        Eyes { views: [view; 2], depths: None, motions: None }
+        Eyes { views: [view; 2], depths: None }
     }
 }
 
@@ -26,10 +23,9 @@ impl Eyes {
 /// [`Rewritten::link`], whose borrow ensures that. Usual numbers of layers need no allocation.
 #[derive(Default)]
 pub struct Rewritten {
-    /// The views of each layer, in the runtime's order, their depth and their motion vectors.
+    /// The views of each layer, in the runtime's order, and their depth.
     views: SmallVec<[SmallVec<[sys::CompositionLayerProjectionView; 4]>; 2]>,
     depths: SmallVec<[SmallVec<[Option<sys::CompositionLayerDepthInfoKHR>; 4]>; 2]>,
-    motions: SmallVec<[SmallVec<[MotionInfo; 4]>; 2]>,
     projections: SmallVec<[sys::CompositionLayerProjection; 2]>,
     layers: SmallVec<[*const sys::CompositionLayerBaseHeader; 16]>,
 }
@@ -40,21 +36,8 @@ impl Rewritten {
         self.views.push(eyes.iter().flat_map(|eyes| eyes.views).collect());
         let depths = |eyes: &Eyes| eyes.depths.map_or([None; 2], |depths| depths.map(Some));
         self.depths.push(eyes.iter().flat_map(depths).collect());
-        // A layer's views have vectors all or none.
-        let all = eyes.iter().all(|eyes| eyes.motions.is_some());
-        self.motions.push(eyes.iter().filter(|_| all).filter_map(|eyes| eyes.motions).flatten().collect());
         self.projections
             .push(sys::CompositionLayerProjection { view_count: 2 * eyes.len() as u32, ..*layer });
-    }
-
-    /// True if there are motion vectors.
-    pub fn has_motions(&self) -> bool {
-        self.motions.iter().any(|motions| !motions.is_empty())
-    }
-
-    /// Takes all motion vectors out again.
-    pub fn drop_motions(&mut self) {
-        self.motions.iter_mut().for_each(|motions| motions.clear());
     }
 
     /// Returns the application's layers, in which the rewritten layers replace those with this number of views.
@@ -63,12 +46,10 @@ impl Rewritten {
     /// The layers are those of a call of xrEndFrame, and all of them with this number of views were pushed in their
     /// order.
     pub unsafe fn link(&mut self, layers: Layers, views: usize) -> Layers<'_> {
-        let parts = self.views.iter_mut().zip(&self.depths).zip(&mut self.motions);
-        for (projection, ((views, depths), motions)) in self.projections.iter_mut().zip(parts) {
-            let mut motions = motions.iter_mut();
+        let parts = self.views.iter_mut().zip(&self.depths);
+        for (projection, (views, depths)) in self.projections.iter_mut().zip(parts) {
             for (view, depth) in views.iter_mut().zip(depths) {
-                let depth = depth.as_ref().map_or(std::ptr::null(), |depth| std::ptr::from_ref(depth).cast());
-                view.next = motions.next().map_or(depth, |motion| motion.chain(depth));
+                view.next = depth.as_ref().map_or(std::ptr::null(), |depth| std::ptr::from_ref(depth).cast());
             }
             projection.views = views.as_ptr();
         }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::{Duration, Instant};
 
-use crate::say;
+use crate::log_line;
 
 /// Counts and times since the session was created.
 #[derive(Clone, Copy, Default)]
@@ -18,9 +18,15 @@ pub struct Statistics {
     pub application: Duration,
     /// The layer's time in xrEndFrame, without the runtime's.
     pub layer: Duration,
-    /// The GPU time of the synthesis of `timed` frames.
-    pub gpu: Duration,
-    pub timed: u64,
+    /// The GPU time of the synthesis, as far as it is known.
+    pub gpu: GpuTime,
+}
+
+/// The GPU time of the synthesis of a number of frames.
+#[derive(Clone, Copy, Default)]
+pub struct GpuTime {
+    pub sum: Duration,
+    pub frames: u64,
 }
 
 /// The mean of a number of times, in milliseconds. Displayed as `na` if there are none.
@@ -59,10 +65,10 @@ impl Report {
         let rate = frames as f64 / passed.as_secs_f64();
         let synthesized = now.synthesized - last.synthesized;
         let fallbacks = now.fallbacks - last.fallbacks;
-        let gpu = Mean { sum: now.gpu - last.gpu, count: now.timed - last.timed };
+        let gpu = Mean { sum: now.gpu.sum - last.gpu.sum, count: now.gpu.frames - last.gpu.frames };
         let own = Mean { sum: now.application - last.application, count: frames };
         let layer = Mean { sum: now.layer - last.layer, count: frames };
-        say(format_args!(
+        log_line(format_args!(
             "{application}: {rate:.1} frames a second, {synthesized} synthesized in {gpu} ms of GPU time each, \
              {fallbacks} not; {own} ms of a frame the application's, {layer} ms the layer's"
         ));

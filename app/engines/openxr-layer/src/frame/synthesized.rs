@@ -7,43 +7,29 @@ use yoro::eyes::Eye;
 
 use super::chain::sub_image;
 use super::rewrite::Eyes;
-use super::target::Acquired;
-use super::vectors::EyeVectors;
+use super::target::{Acquired, AcquiredImages};
 use crate::geometry::{Rectangle, Split, pose, xr_fov, xr_pose};
-use crate::motion::MotionInfo;
 use crate::swapchain::Swapchain;
-
-/// Two images that the application submits. While it shows them again, they stay equal.
-#[derive(Clone, Copy, PartialEq)]
-pub struct Images {
-    /// Swapchain, array layer and rectangle of each.
-    parts: [(sys::Swapchain, u32, [i32; 4]); 2],
-    /// The number of releases of their images. The images are unchanged while it stays the same.
-    releases: [u64; 2],
-}
-
-impl Images {
-    pub fn new(swapchains: &[Arc<Swapchain>], images: [&sys::SwapchainSubImage; 2]) -> Images {
-        let parts = images.map(|part| {
-            let sys::Rect2Di { offset, extent } = part.image_rect;
-            (part.swapchain, part.image_array_index, [offset.x, offset.y, extent.width, extent.height])
-        });
-        let releases = images.map(|part| {
-            let swapchain = swapchains.iter().find(|swapchain| swapchain.handle == part.swapchain);
-            swapchain.map_or(0, |swapchain| swapchain.releases())
-        });
-        Images { parts, releases }
-    }
-}
 
 /// The inputs of a synthesized image, except for the pose.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Key {
     /// Colour and depth.
-    images: Images,
+    images: [SubmittedImage; 2],
     fov: [f32; 4],
     planes: [f32; 4],
     upside_down: bool,
+}
+
+/// A part of a swapchain's image. While the application shows it again, it stays equal.
+#[derive(Clone, Copy, PartialEq)]
+struct SubmittedImage {
+    swapchain: sys::Swapchain,
+    layer: u32,
+    /// Offset and extent.
+    rectangle: [i32; 4],
+    /// The number of images that were released. The image is unchanged while it stays the same.
+    releases: u64,
 }
 
 impl Key {
@@ -53,7 +39,16 @@ impl Key {
         info: &sys::CompositionLayerDepthInfoKHR,
         upside_down: bool,
     ) -> Key {
-        let images = Images::new(swapchains, [&view.sub_image, &info.sub_image]);
+        let images = [&view.sub_image, &info.sub_image].map(|part| {
+            let sys::Rect2Di { offset, extent } = part.image_rect;
+            let swapchain = swapchains.iter().find(|swapchain| swapchain.handle == part.swapchain);
+            SubmittedImage {
+                swapchain: part.swapchain,
+                layer: part.image_array_index,
+                rectangle: [offset.x, offset.y, extent.width, extent.height],
+                releases: swapchain.map_or(0, |swapchain| swapchain.releases()),
+            }
+        });
         let sys::Fovf { angle_left, angle_right, angle_up, angle_down } = view.fov;
         let fov = [angle_left, angle_right, angle_up, angle_down];
         let planes = [info.near_z, info.far_z, info.min_depth, info.max_depth];
@@ -68,24 +63,10 @@ pub struct Synthesized {
     /// The dominant eye's part of the application's image.
     pub crop: Rectangle,
     pub dominant: Eye,
-    /// Colour and depth of the other eye.
-    pub color: Acquired,
-    pub depth: Option<Acquired>,
-    /// The vectors of both eyes, if the application submitted some that could be moved.
-    pub vectors: Option<EyeVectors>,
+    pub images: AcquiredImages,
 }
 
 impl Synthesized {
-    /// Returns the motion vectors of both eyes for the application's, if they were made of the same images.
-    pub fn motions(
-        &self,
-        swapchains: &[Arc<Swapchain>],
-        info: Option<MotionInfo>,
-    ) -> Option<[MotionInfo; 2]> {
-        let (vectors, info) = self.vectors.zip(info)?;
-        vectors.infos(swapchains, &info)
-    }
-
     /// Returns the views for the pose of this view, whose key is the same.
     pub fn again(
         &self,
@@ -121,15 +102,15 @@ impl Synthesized {
             next: std::ptr::null(),
             pose: xr_pose(self.split.poses[eye.index()]),
             fov: xr_fov(self.split.frusta[eye.index()]),
-            sub_image: part(eye, &view.sub_image, self.color),
+            sub_image: part(eye, &view.sub_image, self.images.color),
         });
-        let depths = self.depth.map(|target| {
+        let depths = self.images.depth.map(|target| {
             Eye::BOTH.map(|eye| sys::CompositionLayerDepthInfoKHR {
                 next: std::ptr::null(),
                 sub_image: part(eye, &info.sub_image, target),
                 ..*info
             })
         });
-        Eyes { views, depths, motions: None }
+        Eyes { views, depths }
     }
 }

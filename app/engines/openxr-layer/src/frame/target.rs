@@ -33,7 +33,7 @@ impl Target {
             ty: sys::SwapchainCreateInfo::TYPE,
             next: std::ptr::null(),
             create_flags: sys::SwapchainCreateFlags::EMPTY,
-            usage_flags: attachment | session.instance.settings.usage_to_read(),
+            usage_flags: attachment | sys::SwapchainUsageFlags::SAMPLED,
             format: like.format,
             sample_count: 1,
             width: like.size[0],
@@ -99,6 +99,14 @@ impl Target {
         // SAFETY: the layer's own swapchain, which nothing refers to any longer.
         unsafe { (session.instance.next.destroy_swapchain)(self.handle) };
     }
+}
+
+/// Images of the other eye that can be written to.
+#[derive(Clone, Copy)]
+pub struct AcquiredImages {
+    pub color: Acquired,
+    /// `None` if the runtime takes no depth.
+    pub depth: Option<Acquired>,
 }
 
 /// An image of a [`Target`] that can be written to.

@@ -1,8 +1,6 @@
 //! Synthesis in the application's OpenGL or OpenGL ES context, whose state is restored afterwards.
 
 mod binding;
-#[cfg(feature = "capture")]
-mod read_back;
 mod timer;
 
 use std::mem::ManuallyDrop;
@@ -11,8 +9,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use glow::HasContext as _;
-use yoro::opengl::{Context, Destination, GlApi, GlError, GlState, Options, Outputs, Pipeline, Source};
-use yoro::synthesis::backend::WarpKind;
+use yoro::opengl::{Context, Destination, Gather, GlApi, GlError, GlState, Options, Outputs, Source};
 
 pub use binding::{Binding, Current};
 
@@ -22,16 +19,16 @@ use crate::synthesizer::{self, Image, Job};
 use timer::Timer;
 
 /// The pipeline in the application's context.
-pub struct Synthesizer<W: WarpKind> {
+pub struct Synthesizer {
     binding: Binding,
     /// Deleted only while the context is current.
-    objects: ManuallyDrop<Objects<W>>,
+    objects: ManuallyDrop<Objects>,
 }
 
 /// The objects in the context. They are used only while it is current.
-struct Objects<W> {
+struct Objects {
     context: Rc<Context>,
-    pipeline: Option<(Outputs, Pipeline<W>)>,
+    pipeline: Option<(Outputs, Gather)>,
     /// Framebuffers by the colour and depth that are attached to them.
     targets: Vec<([Option<Image>; 2], glow::Framebuffer)>,
     /// Copies of colour and depth, used if only a part of an image is submitted.
@@ -48,14 +45,14 @@ struct Copy {
 
 // SAFETY: the objects of a context are used only while it is current, on one thread at a time, and so are the reference
 // counts next to them: `Frames` is locked meanwhile.
-unsafe impl<W: WarpKind> Send for Synthesizer<W> {}
+unsafe impl Send for Synthesizer {}
 
-impl<W: WarpKind> Synthesizer<W> {
+impl Synthesizer {
     /// Creates a pipeline in the context.
     ///
     /// # Safety
     /// The binding's context exists until this is dropped.
-    pub unsafe fn new(binding: Binding) -> Result<Synthesizer<W>, Reason> {
+    pub unsafe fn new(binding: Binding) -> Result<Synthesizer, Reason> {
         // SAFETY: the context exists and is current; these are its entry points.
         let objects = unsafe {
             let _current = binding.make_current()?;
@@ -68,7 +65,7 @@ impl<W: WarpKind> Synthesizer<W> {
     }
 }
 
-impl<W: WarpKind> Drop for Synthesizer<W> {
+impl Drop for Synthesizer {
     fn drop(&mut self) {
         // SAFETY: the context exists, and its objects are no longer used. If it is current elsewhere, they remain until
         // it is destroyed.
@@ -81,8 +78,8 @@ impl<W: WarpKind> Drop for Synthesizer<W> {
     }
 }
 
-impl<W: WarpKind> synthesizer::Synthesizer<W> for Synthesizer<W> {
-    unsafe fn synthesize(&mut self, job: &Job<W>) -> Result<Option<Duration>, Reason> {
+impl synthesizer::Synthesizer for Synthesizer {
+    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
         // SAFETY: the context exists, and its images are not in use.
         unsafe {
             let _current = self.binding.make_current()?;
@@ -108,12 +105,6 @@ impl<W: WarpKind> synthesizer::Synthesizer<W> for Synthesizer<W> {
             keep
         });
     }
-
-    #[cfg(feature = "capture")]
-    unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String> {
-        // SAFETY: same contract.
-        unsafe { self.read_rgb(image, part) }
-    }
 }
 
 fn texture(name: u64) -> Result<glow::Texture, Reason> {
@@ -136,8 +127,8 @@ fn bind_framebuffers(gl: &glow::Context, [draw, read]: [Option<glow::Framebuffer
     }
 }
 
-impl<W: WarpKind> Objects<W> {
-    unsafe fn synthesize(&mut self, job: &Job<W>) -> Result<Option<Duration>, Reason> {
+impl Objects {
+    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
         let context = Rc::clone(&self.context);
         let context = &*context;
         let _silence = Silence::begin(context);
@@ -153,12 +144,12 @@ impl<W: WarpKind> Objects<W> {
             Some((made_for, pipeline)) if *made_for == outputs => pipeline,
             other => {
                 let options = Options { gl_state: GlState::Preserve, ..Options::default() };
-                let pipeline = Pipeline::new(&self.context, &options, outputs)?;
+                let pipeline = Gather::new(&self.context, &options, outputs)?;
                 &mut other.insert((outputs, pipeline)).1
             }
         };
         let target =
-            Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: job.warp.sizes()[1] };
+            Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: job.warp.target_size };
         let timing = self.timer.as_mut().and_then(|timer| timer.begin(context));
         let result = pipeline.synthesize(source, job.warp, &target);
         if let Some(timing) = timing {

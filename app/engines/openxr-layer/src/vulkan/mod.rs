@@ -1,8 +1,5 @@
 //! Synthesis on the application's Vulkan device and queue.
 
-#[cfg(feature = "capture")]
-mod read_back;
-
 use std::ffi::c_void;
 use std::sync::OnceLock;
 use std::time::Duration;
@@ -10,13 +7,10 @@ use std::time::Duration;
 use ash::vk;
 use ash::vk::Handle as _;
 use openxr_sys as sys;
-use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::{
-    Frame, Host, ImageState, LayerImage, Options, Pipeline, SourceId, SourceImages, TargetId, TargetImages,
+    Frame, Gather, Host, ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages,
 };
 
-#[cfg(feature = "capture")]
-use crate::geometry::Rectangle;
 use crate::reason::Reason;
 use crate::synthesizer::{self, Image, Job, TIMEOUT};
 
@@ -48,9 +42,9 @@ impl Binding {
 }
 
 /// Command buffers and a pipeline, for one session.
-pub struct Synthesizer<W> {
+pub struct Synthesizer {
     // Declared before the other objects of the device, because it must be dropped first.
-    pipeline: Option<(Pipeline<W>, Options)>,
+    pipeline: Option<(Gather, Options)>,
     sources: Vec<([Image; 2], SourceId)>,
     targets: Vec<([Option<Image>; 2], TargetId)>,
     instance: ash::Instance,
@@ -76,12 +70,12 @@ fn entry() -> Option<&'static ash::Entry> {
     ENTRY.get_or_init(|| unsafe { ash::Entry::load().ok() }).as_ref()
 }
 
-impl<W: WarpKind> Synthesizer<W> {
+impl Synthesizer {
     /// Creates command buffers on the device.
     ///
     /// # Safety
     /// The binding's handles are valid until this is dropped.
-    pub unsafe fn new(binding: Binding) -> Result<Synthesizer<W>, Reason> {
+    pub unsafe fn new(binding: Binding) -> Result<Synthesizer, Reason> {
         let entry = entry().ok_or(Reason::NoLibrary("Vulkan's loader"))?;
         // SAFETY: handles of the application's session.
         let (instance, device) = unsafe {
@@ -124,7 +118,7 @@ impl<W: WarpKind> Synthesizer<W> {
     }
 
     /// Creates a pipeline for the formats and sizes of a job, unless the existing one fits.
-    unsafe fn make_pipeline(&mut self, job: &Job<W>) -> Result<(), Reason> {
+    unsafe fn make_pipeline(&mut self, job: &Job) -> Result<(), Reason> {
         let [source, target] = [job.color.size, job.target.size];
         let fits = |limit: [u32; 2], size: [u32; 2]| limit[0] >= size[0] && limit[1] >= size[1];
         if let Some((_, options)) = &self.pipeline
@@ -157,12 +151,12 @@ impl<W: WarpKind> Synthesizer<W> {
             debug_utils: false,
         };
         // SAFETY: the handles are valid until this is dropped, which waits for its commands.
-        let pipeline = unsafe { Pipeline::new(&host, &options).map_err(Reason::Synthesis)? };
+        let pipeline = unsafe { Gather::new(&host, &options).map_err(Reason::Synthesis)? };
         self.pipeline = Some((pipeline, options));
         Ok(())
     }
 
-    unsafe fn source(&mut self, job: &Job<W>) -> Result<SourceId, Reason> {
+    unsafe fn source(&mut self, job: &Job) -> Result<SourceId, Reason> {
         let key = [job.color, job.depth];
         if let Some((_, id)) = self.sources.iter().find(|(source, _)| *source == key) {
             return Ok(*id);
@@ -177,7 +171,7 @@ impl<W: WarpKind> Synthesizer<W> {
         Ok(id)
     }
 
-    unsafe fn target(&mut self, job: &Job<W>) -> Result<TargetId, Reason> {
+    unsafe fn target(&mut self, job: &Job) -> Result<TargetId, Reason> {
         let key = [Some(job.target), job.target_depth];
         if let Some((_, id)) = self.targets.iter().find(|(known, _)| *known == key) {
             return Ok(*id);
@@ -248,9 +242,7 @@ impl<W: WarpKind> Synthesizer<W> {
             }
         }
     }
-}
 
-impl<W> Synthesizer<W> {
     fn wait_for_all(&self) {
         for slot in self.slots.iter().filter(|slot| !slot.fence.is_null()) {
             // SAFETY: this device's fence. Errors are ignored, since waiting for a lost or hanging device is pointless.
@@ -263,8 +255,8 @@ impl<W> Synthesizer<W> {
     }
 }
 
-impl<W: WarpKind + Send> synthesizer::Synthesizer<W> for Synthesizer<W> {
-    unsafe fn synthesize(&mut self, job: &Job<W>) -> Result<Option<Duration>, Reason> {
+impl synthesizer::Synthesizer for Synthesizer {
+    unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason> {
         let slot = self.slots[self.frame % FRAMES];
         // SAFETY: commands and images are this device's, and the slot's commands are not pending.
         unsafe {
@@ -309,16 +301,10 @@ impl<W: WarpKind + Send> synthesizer::Synthesizer<W> for Synthesizer<W> {
             keep
         });
     }
-
-    #[cfg(feature = "capture")]
-    unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String> {
-        // SAFETY: same contract.
-        unsafe { self.read_rgb(image, part) }
-    }
 }
 
 /// Returns the pipeline, which must have been created.
-fn made<W>(made: &mut Option<(Pipeline<W>, Options)>) -> Result<&mut Pipeline<W>, Reason> {
+fn made(made: &mut Option<(Gather, Options)>) -> Result<&mut Gather, Reason> {
     made.as_mut().map(|(pipeline, _)| pipeline).ok_or(Reason::Panic)
 }
 
@@ -334,7 +320,7 @@ fn layer_image(image: Image, before: ImageState, after: ImageState) -> LayerImag
     LayerImage { image: vk_image(image), format: vk_format(image), layer: image.layer, before, after }
 }
 
-impl<W> Drop for Synthesizer<W> {
+impl Drop for Synthesizer {
     fn drop(&mut self) {
         self.wait_for_all();
         self.pipeline = None;

@@ -57,7 +57,7 @@ pub fn assert_seen(seen: &Seen, habits: &Habits, what: &str) {
 /// Checks that the runtime found no violation, and that each session has these numbers of synthesized and other frames.
 pub fn assert_counts(seen: &Seen, counts: &[[u64; 2]], what: &str) {
     assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
-    assert_eq!(seen.counts(), counts, "{what}: {}", seen.said);
+    assert_eq!(seen.counts(), counts, "{what}: {}", seen.layer_log);
 }
 
 /// Does the checks of [`assert_counts`], and those of [`assert_seen`] for the last images.

@@ -1,9 +1,8 @@
 //! A scripted OpenXR application above the layer, with the simulated runtime below it.
 
-use std::ffi::{CStr, c_void};
+use std::ffi::CStr;
 use std::ptr;
 
-use half::f16;
 use openxr_sys as sys;
 use sys::{Handle as _, ViewConfigurationType as ViewsOf, pfn};
 use yoro::eyes::{DepthRange, Frustum, Pose};
@@ -18,9 +17,6 @@ use crate::scene::{self, Picture};
 mod extensions;
 
 pub const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
-
-/// The format of motion vectors.
-pub const VECTORS: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 /// A failed call of the application.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -224,36 +220,12 @@ impl View {
     }
 }
 
-/// The structure for the motion vectors of a view.
-#[derive(Clone, Copy)]
-pub enum Motion {
-    FrameSynthesis(sys::FrameSynthesisInfoEXT),
-    SpaceWarp(sys::CompositionLayerSpaceWarpInfoFB),
-}
-
-impl Motion {
-    /// Chains a structure to this one, and returns the chain.
-    fn chain(&mut self, next: *const c_void) -> *const c_void {
-        match self {
-            Motion::FrameSynthesis(info) => {
-                info.next = next;
-                ptr::from_ref(info).cast()
-            }
-            Motion::SpaceWarp(info) => {
-                info.next = next;
-                ptr::from_ref(info).cast()
-            }
-        }
-    }
-}
-
 /// A view to submit.
 #[derive(Clone, Copy)]
 pub struct Submitted {
     pub view: View,
     pub color: Part,
     pub depth: Option<(Part, Planes)>,
-    pub motion: Option<Motion>,
 }
 
 /// A composition layer to submit.
@@ -715,37 +687,6 @@ impl<'a> Client<'a> {
         }
     }
 
-    /// Writes motion vectors to a part of a swapchain's image, with rows from the bottom.
-    pub fn upload_vectors(&self, to: u64, part: Part, vectors: &[[f32; 4]]) {
-        match self.drawing {
-            Drawing::Vulkan(gpu) => {
-                let image = gpu.image(VECTORS, part.size, 1);
-                let rows = vectors.chunks_exact(part.size[0] as usize).rev().flatten().flatten();
-                let bytes: Vec<u8> = rows.flat_map(|number| f16::from_f32(*number).to_ne_bytes()).collect();
-                image.upload(0, &bytes, READ);
-                copy(gpu, &image, vk::Image::from_raw(to), part);
-            }
-            Drawing::Gles(gles) => gles.upload_vectors(to, part, vectors),
-        }
-    }
-
-    /// Writes the depth of motion vectors to a part of a swapchain's image, with rows from the bottom.
-    pub fn upload_depth(&self, to: u64, part: Part, stored: &[f32]) {
-        match self.drawing {
-            Drawing::Vulkan(gpu) => {
-                let image = gpu.image(vk::Format::D32_SFLOAT, part.size, 1);
-                image.upload_depth(0, stored, READ);
-                copy(gpu, &image, vk::Image::from_raw(to), part);
-            }
-            Drawing::Gles(gles) => gles.upload_depth(to, part, stored),
-        }
-    }
-
-    /// True if the application draws with OpenGL ES, in whose images rows and y of NDC grow upwards.
-    pub fn is_gles(&self) -> bool {
-        matches!(self.drawing, Drawing::Gles(_))
-    }
-
     /// Ends a frame with these layers.
     pub fn end_frame(&mut self, frame: Frame, layers: &[Layer]) -> Outcome<()> {
         // Eight layers of four views are enough. They are on the stack, because the tests count the layer's allocations.
@@ -758,7 +699,6 @@ impl<'a> Client<'a> {
                 std::mem::zeroed::<[sys::CompositionLayerQuad; 8]>(),
             )
         };
-        let mut motions = [[None; 4]; 8];
         let mut pointers = [ptr::null::<sys::CompositionLayerBaseHeader>(); 8];
         let (space, layer_flags) = (self.space, sys::CompositionLayerFlags::EMPTY);
         let layout = sys::CompositionLayerImageLayoutFB {
@@ -783,10 +723,6 @@ impl<'a> Client<'a> {
                                 far_z: planes.far,
                             };
                             next = (&raw const depths[i][j]).cast();
-                        }
-                        motions[i][j] = one.motion;
-                        if let Some(motion) = &mut motions[i][j] {
-                            next = motion.chain(next);
                         }
                         views[i][j] = sys::CompositionLayerProjectionView {
                             ty: sys::CompositionLayerProjectionView::TYPE,

@@ -11,7 +11,7 @@ use yoro::vulkan::ash::vk;
 use yoro::vulkan::ash::vk::Handle as _;
 use yoro_context::{Backend, Binding, Graphics as _, Headless, HeadlessGraphics};
 
-use crate::client::{Part, VECTORS};
+use crate::client::Part;
 use crate::harness::{self, Gpu};
 use crate::world;
 
@@ -85,11 +85,6 @@ impl Gles<'_> {
 
     pub fn upload_color(&self, texture: u64, part: Part, rgba: &[u8]) {
         self.upload(texture, part, [glow::RGBA, glow::UNSIGNED_BYTE], rgba);
-    }
-
-    pub fn upload_vectors(&self, texture: u64, part: Part, vectors: &[[f32; 4]]) {
-        let bytes: Vec<u8> = vectors.iter().flatten().flat_map(|number| number.to_ne_bytes()).collect();
-        self.upload(texture, part, [glow::RGBA, glow::FLOAT], &bytes);
     }
 
     pub fn upload_depth(&self, texture: u64, part: Part, stored: &[f32]) {
@@ -200,7 +195,6 @@ impl Drawing<'_> {
         match self {
             Drawing::Vulkan(_) => format.as_raw().into(),
             Drawing::Gles(_) if harness::is_depth(format) => glow::DEPTH_COMPONENT32F.into(),
-            Drawing::Gles(_) if format == VECTORS => glow::RGBA16F.into(),
             Drawing::Gles(_) => glow::SRGB8_ALPHA8.into(),
         }
     }
@@ -211,23 +205,24 @@ impl Drawing<'_> {
         enumerate: pfn::EnumerateSwapchainImages,
         swapchain: sys::Swapchain,
     ) -> (sys::Result, Vec<u64>) {
-        const MOST: usize = 8;
+        const MAX_IMAGES: usize = 8;
         let mut count = 0;
         let ask = |images: *mut sys::SwapchainImageBaseHeader, count: &mut u32| {
             // SAFETY: room for as many elements as stated.
-            unsafe { enumerate(swapchain, MOST as u32, count, images) }
+            unsafe { enumerate(swapchain, MAX_IMAGES as u32, count, images) }
         };
         match self {
             Drawing::Vulkan(_) => {
                 let ty = sys::SwapchainImageVulkanKHR::TYPE;
-                let mut images = [sys::SwapchainImageVulkanKHR { ty, next: ptr::null_mut(), image: 0 }; MOST];
+                let mut images =
+                    [sys::SwapchainImageVulkanKHR { ty, next: ptr::null_mut(), image: 0 }; MAX_IMAGES];
                 let result = ask(images.as_mut_ptr().cast(), &mut count);
                 (result, images[..count as usize].iter().map(|image| image.image).collect())
             }
             Drawing::Gles(_) => {
                 let ty = sys::SwapchainImageOpenGLESKHR::TYPE;
                 let mut images =
-                    [sys::SwapchainImageOpenGLESKHR { ty, next: ptr::null_mut(), image: 0 }; MOST];
+                    [sys::SwapchainImageOpenGLESKHR { ty, next: ptr::null_mut(), image: 0 }; MAX_IMAGES];
                 let result = ask(images.as_mut_ptr().cast(), &mut count);
                 (result, images[..count as usize].iter().map(|image| image.image.into()).collect())
             }

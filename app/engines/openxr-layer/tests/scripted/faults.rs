@@ -46,23 +46,23 @@ fn no_fault_of_the_runtime_fails_another_call() {
                     Err(Failure { call: failed, result: got }) => {
                         // A release that is held back returns its error in xrEndFrame.
                         let late = call == "xrReleaseSwapchainImage" && failed == "xrEndFrame";
-                        assert!(failed == call || late, "{what}: {failed} fails: {}", seen.said);
+                        assert!(failed == call || late, "{what}: {failed} fails: {}", seen.layer_log);
                         assert_eq!(got.into_raw(), result, "{what}");
                         passed += 1;
                     }
                     Ok(()) => {
                         assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
                         let counts = seen.counts();
-                        assert_eq!(counts.iter().flatten().sum::<u64>(), 4, "{what}: {}", seen.said);
+                        assert_eq!(counts.iter().flatten().sum::<u64>(), 4, "{what}: {}", seen.layer_log);
                         let synthesized = seen.views()[0].image != seen.views()[1].image;
                         // Swapchains that the layer could not create in a readable form remain unreadable.
                         let lasts = and_later || making.contains(&call.as_str());
-                        assert!(synthesized || lasts, "{what}: {}", seen.said);
+                        assert!(synthesized || lasts, "{what}: {}", seen.layer_log);
                         assert_eq!(
-                            seen.said("the same image for both eyes") > 0,
+                            seen.count_in_log("the same image for both eyes") > 0,
                             counts[0][1] > 0,
                             "{}",
-                            seen.said
+                            seen.layer_log
                         );
                         own += 1;
                     }
@@ -90,7 +90,7 @@ fn a_refused_or_late_runtime_costs_one_frame() {
             let habits = Habits { frames: 4, ..Habits::PLAIN };
             let seen = watched(faulty(call, nth, result), || drop(run(gpu, &habits).unwrap()));
             assert_counts(&seen, &[[3, 1]], reason);
-            assert_eq!(seen.said(reason), 1, "{}", seen.said);
+            assert_eq!(seen.count_in_log(reason), 1, "{}", seen.layer_log);
             assert_seen(&seen, &habits, reason);
         }
     });
@@ -129,7 +129,7 @@ fn sessions_and_instances_can_be_lost_in_every_state() {
             assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
             let counts = seen.counts();
             let [synthesized, not] = counts.last().unwrap();
-            assert!(*synthesized > 8 && *not == 0, "{what}: {}", seen.said);
+            assert!(*synthesized > 8 && *not == 0, "{what}: {}", seen.layer_log);
         }
     });
 }
@@ -169,7 +169,7 @@ fn a_release_that_fails_late_costs_one_frame() {
             (6, 3),
             "two before there is a view, one without layers, three"
         );
-        assert_eq!(seen.counts(), [[4, 0]], "{}", seen.said);
+        assert_eq!(seen.counts(), [[4, 0]], "{}", seen.layer_log);
         assert_seen(&seen, &habits, "afterwards");
     });
 }
@@ -183,18 +183,18 @@ fn no_lock_is_held_in_the_runtimes_end_of_a_frame() {
             let work = |client: &mut Client, chains: &Chains| {
                 let unused = client.chain(SRGB, [64; 2], 1)?;
                 let destroy = Arc::new(client.destroyer(unused));
-                let (tell, told) = mpsc::channel();
-                let (tell, told) = (Mutex::new(Some(tell)), Mutex::new(told));
+                let (sender, receiver) = mpsc::channel();
+                let (sender, receiver) = (Mutex::new(Some(sender)), Mutex::new(receiver));
                 let ended = Arc::new(AtomicBool::new(false));
                 let noted = Arc::clone(&ended);
                 yoro_openxr_stub::watch(Some(Arc::new(move |call: &str| {
                     if call != "xrEndFrame" {
                         return;
                     }
-                    let Some(tell) = tell.lock().unwrap().take() else { return };
+                    let Some(sender) = sender.lock().unwrap().take() else { return };
                     let destroy = Arc::clone(&destroy);
-                    thread::spawn(move || tell.send(destroy()));
-                    let result = told.lock().unwrap().recv_timeout(Duration::from_secs(10));
+                    thread::spawn(move || sender.send(destroy()));
+                    let result = receiver.lock().unwrap().recv_timeout(Duration::from_secs(10));
                     noted.store(result == Ok(sys::Result::SUCCESS), Ordering::Relaxed);
                 })));
                 let result = frames(client, chains, &habits, 1);

@@ -98,7 +98,7 @@ pub fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View)
         depth = Some((chains.depth_part(), habits.planes));
     }
     client.release(&chains.color)?;
-    Ok(Submitted { view, color: chains.part, depth, motion: None })
+    Ok(Submitted { view, color: chains.part, depth })
 }
 
 /// Begins a session, and creates its swapchains.
@@ -162,9 +162,9 @@ pub fn with_session<'a>(
     client.destroy_session()
 }
 
-/// Runs at most `most` frames, until the session is over or lost.
-pub fn until_over(client: &mut Client, chains: &Chains, habits: &Habits, most: u32) -> Outcome<()> {
-    for _ in 0..most {
+/// Runs at most `limit` frames, until the session is over or lost.
+pub fn until_over(client: &mut Client, chains: &Chains, habits: &Habits, limit: u32) -> Outcome<()> {
+    for _ in 0..limit {
         client.poll()?;
         if client.over {
             break;

@@ -7,7 +7,6 @@ mod drawing;
 mod faults;
 mod habits;
 mod lasting;
-mod motion;
 mod passing;
 mod scene;
 mod stereo;

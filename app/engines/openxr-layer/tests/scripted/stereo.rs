@@ -57,15 +57,15 @@ fn one_view_becomes_the_two_views_of_the_runtime() {
 
 /// Eyes of headsets may be canted outwards, and have frusta of different heights.
 #[test]
-fn canted_and_unlike_eyes_are_served_by_parallel_ones() {
+fn canted_and_unequal_eyes_are_served_by_parallel_ones() {
     with_gpu(|gpu| {
         for name in ["left", "right"] {
             let habits = Habits { name, ..Habits::PLAIN };
             let mut canted = script();
             canted.eyes.iter_mut().for_each(|eye| eye.cant_degrees = 5.0);
-            let mut unlike = script();
-            unlike.eyes[1].fov_degrees = [-40.0, 50.0, 44.0, -53.0];
-            for (what, script) in [("canted", canted), ("unlike", unlike)] {
+            let mut unequal = script();
+            unequal.eyes[1].fov_degrees = [-40.0, 50.0, 44.0, -53.0];
+            for (what, script) in [("canted", canted), ("unequal", unequal)] {
                 let seen = watched(script.clone(), || drop(run(gpu, &habits).unwrap()));
                 assert_sessions(&seen, &habits, &[[3, 0]], what);
                 // The submitted view contains that of the runtime's own eye, to a pixel.
@@ -124,12 +124,11 @@ fn other_layers_stay_as_they_are_and_in_order() {
                     "the same twice".into()
                 }
                 log::Layer::Projection { views } => format!("{} views", views.len()),
-                log::Layer::Quad { image, .. } => format!("quad {}", image.rect[0]),
-                log::Layer::Other { .. } => "other".into(),
+                log::Layer::Quad { image } => format!("quad {}", image.rect[0]),
             })
             .collect();
         assert_eq!(found, ["quad 0", "2 views", "quad 8", "the same twice", "quad 16"]);
-        assert_eq!(seen.said("submits more than one projection layer"), 1, "{}", seen.said);
+        assert_eq!(seen.count_in_log("submits more than one projection layer"), 1, "{}", seen.layer_log);
     });
 }
 
@@ -155,13 +154,13 @@ fn shrink_replaces_the_tiny_view() {
                 let rendered = render(&mut client, &own, &habits, views[1].unwrap()).unwrap();
                 client.acquire(&tiny).unwrap();
                 client.release(&tiny).unwrap();
-                let unused = Submitted { view: views[0].unwrap(), color: part, depth: None, motion: None };
+                let unused = Submitted { view: views[0].unwrap(), color: part, depth: None };
                 client.end_frame(frame, &[Layer::Projection(vec![unused, rendered])]).unwrap();
             }
             client.destroy_session().unwrap();
         });
         assert_counts(&seen, &[[3, 0]], "a tiny view");
-        assert_eq!(seen.said("renders a tiny image for the left eye"), 1, "{}", seen.said);
+        assert_eq!(seen.count_in_log("renders a tiny image for the left eye"), 1, "{}", seen.layer_log);
         assert_own_eyes(&seen, &script(), 0.0, "a tiny view");
         assert_seen(&seen, &habits, "a tiny view");
         assert_depth(&seen, &habits, "a tiny view");
@@ -203,7 +202,12 @@ fn shrink_replaces_the_two_tiny_views_of_four() {
                 client.destroy_session().unwrap();
             });
             assert_counts(&seen, &[[8, 0]], what);
-            assert_eq!(seen.said("renders two tiny images for the left eye"), 1, "{what}: {}", seen.said);
+            assert_eq!(
+                seen.count_in_log("renders two tiny images for the left eye"),
+                1,
+                "{what}: {}",
+                seen.layer_log
+            );
             let views = seen.views();
             assert_eq!(views.len(), 4, "{what}");
             for (i, view) in views.iter().enumerate() {
@@ -257,9 +261,9 @@ fn a_view_that_cannot_be_synthesized_is_shown_to_both_eyes() {
                 client.destroy_session().unwrap();
             });
             assert!(seen.violations().is_empty(), "{reason}: {:?}", seen.violations());
-            assert_eq!(seen.said("the same image for both eyes"), 1, "{reason}: {}", seen.said);
-            assert_eq!(seen.said(reason), 1, "{reason}: {}", seen.said);
-            assert_eq!(seen.counts(), [[0, 3]], "{reason}: {}", seen.said);
+            assert_eq!(seen.count_in_log("the same image for both eyes"), 1, "{reason}: {}", seen.layer_log);
+            assert_eq!(seen.count_in_log(reason), 1, "{reason}: {}", seen.layer_log);
+            assert_eq!(seen.counts(), [[0, 3]], "{reason}: {}", seen.layer_log);
             let views = seen.views();
             assert_eq!(
                 (&views[0].image, views[0].position),
@@ -319,7 +323,7 @@ fn an_image_that_the_runtime_has_is_shown_to_both_eyes() {
             with_session(gpu, &habits, work).unwrap();
         });
         assert_counts(&seen, &[[2, 2]], "acquired ahead");
-        assert_eq!(seen.said("was not released since the last frame"), 1, "{}", seen.said);
+        assert_eq!(seen.count_in_log("was not released since the last frame"), 1, "{}", seen.layer_log);
         assert_seen(&seen, &habits, "afterwards");
     });
 }
@@ -438,22 +442,36 @@ fn flipped_views_are_synthesized_on_opengl_es() {
     with_gles(|gles| flipped(gles.into(), &script, "right"));
 }
 
-/// A frame that the runtime refuses for another reason can be ended again.
+/// The application gets the error of a mistake from xrEndFrame, as without the layer, and can end the frame again.
 #[test]
 fn a_frame_that_is_ended_again_is_still_stereo() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
+        let refused = |result| Err(Failure { call: "xrEndFrame", result });
         let seen = watched(script(), || {
             let work = |client: &mut Client, chains: &Chains| {
+                // A count of layers without layers, in the first frame and in a later one.
+                for _ in 0..2 {
+                    let begun = client.begin_frame()?;
+                    let mistake = client.submit(begun, 2, std::ptr::null());
+                    assert_eq!(mistake, refused(sys::Result::ERROR_LAYER_INVALID));
+                    client.end_frame(begun, &[])?;
+                    frames(client, chains, &habits, 2)?;
+                }
+                // A layer of two views in a session of one.
                 let (begun, submitted) = begin_rendered(client, chains, &habits)?;
-                let wrong = client.show(begun.at_another_time(), submitted);
-                let result = sys::Result::ERROR_TIME_INVALID;
-                assert_eq!(wrong, Err(Failure { call: "xrEndFrame", result }));
+                let mistake = client.end_frame(begun, &[Layer::Projection(vec![submitted; 2])]);
+                assert_eq!(mistake, refused(sys::Result::ERROR_VALIDATION_FAILURE));
+                client.show(begun, submitted)?;
+                // The runtime refuses it for another reason than its layers.
+                let (begun, submitted) = begin_rendered(client, chains, &habits)?;
+                let mistake = client.show(begun.at_another_time(), submitted);
+                assert_eq!(mistake, refused(sys::Result::ERROR_TIME_INVALID));
                 client.show(begun, submitted)
             };
             with_session(gpu, &habits, work).unwrap();
         });
-        assert_eq!(seen.counts(), [[2, 0]], "{}", seen.said);
+        assert_eq!(seen.counts(), [[7, 0]], "{}", seen.layer_log);
         assert_seen(&seen, &habits, "ended again");
     });
 }
@@ -479,7 +497,7 @@ fn depth_that_fails_in_one_format_goes_on_in_another() {
         let frames = seen.frames();
         let with_depth = frames.iter().map(|layers| views_of(layers).iter().all(|view| view.depth.is_some()));
         assert_eq!(with_depth.collect::<Vec<_>>(), [false, false, true, true, false, false]);
-        assert_eq!(seen.said("does not go on to the runtime"), 1, "{}", seen.said);
+        assert_eq!(seen.count_in_log("does not go on to the runtime"), 1, "{}", seen.layer_log);
     });
 }
 
@@ -498,6 +516,6 @@ fn subsampled_images_are_shown_to_both_eyes() {
             with_session(gpu, &habits, work).unwrap();
         });
         assert_counts(&seen, &[[0, 2]], "subsampled");
-        assert_eq!(seen.said("subsampled"), 1, "{}", seen.said);
+        assert_eq!(seen.count_in_log("subsampled"), 1, "{}", seen.layer_log);
     });
 }

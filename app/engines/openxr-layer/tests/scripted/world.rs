@@ -91,9 +91,8 @@ pub fn settle() {
     });
 }
 
-/// The formats of a runtime on Vulkan: R8G8B8A8_SRGB, _UNORM, B8G8R8A8_SRGB, _UNORM, depth in 16, 32 and 32+8 bits, and
-/// R16G16B16A16_SFLOAT.
-const FORMATS: [i64; 8] = [43, 37, 50, 44, 124, 126, 130, 97];
+/// The formats of a runtime on Vulkan: R8G8B8A8_SRGB, _UNORM, B8G8R8A8_SRGB, _UNORM, depth in 16, 32 and 32+8 bits.
+const FORMATS: [i64; 7] = [43, 37, 50, 44, 124, 126, 130];
 
 /// Returns a headset on Vulkan, with the frusta of current headsets.
 pub fn script() -> Script {
@@ -111,7 +110,7 @@ pub fn faulty(call: &str, nth: u32, result: openxr_sys::Result) -> Script {
 pub struct Seen {
     pub log: Vec<Entry>,
     /// The layer's log.
-    pub said: String,
+    pub layer_log: String,
     folder: TempDir,
 }
 
@@ -161,9 +160,9 @@ pub fn watched(mut script: Script, application: impl FnOnce()) -> Seen {
     yoro_openxr_stub::begin(script);
     let mut overheard = Overheard::begin();
     application();
-    let said = overheard.text();
+    let layer_log = overheard.text();
     drop(overheard);
-    Seen { log: log::read(&log), said, folder }
+    Seen { log: log::read(&log), layer_log, folder }
 }
 
 impl Seen {
@@ -189,18 +188,9 @@ impl Seen {
 
     /// Returns the last picture that the runtime received for an eye, with rows from the bottom.
     pub fn picture(&self, eye: usize) -> Vec<u8> {
-        self.png(&format!("view-{eye}"))
-    }
-
-    fn png(&self, name: &str) -> Vec<u8> {
-        let path = self.folder.path().join(format!("{name}.png"));
+        let path = self.folder.path().join(format!("view-{eye}.png"));
         let picture: RgbaImage = image::open(path).unwrap().into_rgba8();
         image::imageops::flip_vertical(&picture).into_raw()
-    }
-
-    /// Returns the last picture that the runtime made of an eye's motion vectors, with rows from the bottom.
-    pub fn between(&self, eye: usize) -> Vec<u8> {
-        self.png(&format!("between-{eye}"))
     }
 
     /// Returns the last depth that the runtime received for an eye, with rows from the bottom.
@@ -227,7 +217,7 @@ impl Seen {
 
     /// Returns the layer's counts at the end of each session: synthesized views, and others.
     pub fn counts(&self) -> Vec<[u64; 2]> {
-        let ends = self.said.lines().filter_map(|line| {
+        let ends = self.layer_log.lines().filter_map(|line| {
             let (_, counts) = line.split_once("session ended after ")?.1.split_once(" frames: ")?;
             let (synthesized, rest) = counts.split_once(" synthesized, ")?;
             Some([synthesized.parse().ok()?, rest.strip_suffix(" not")?.parse().ok()?])
@@ -236,7 +226,7 @@ impl Seen {
     }
 
     /// Returns how often a text is in the layer's log.
-    pub fn said(&self, text: &str) -> usize {
-        self.said.matches(text).count()
+    pub fn count_in_log(&self, text: &str) -> usize {
+        self.layer_log.matches(text).count()
     }
 }

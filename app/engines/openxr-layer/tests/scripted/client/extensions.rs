@@ -12,38 +12,15 @@ use super::{Chain, Client, Frame, Outcome, Submitted, check};
 impl Client<'_> {
     /// Returns the near and far planes that the runtime recommends in structures chained to the configuration's views.
     pub fn chained_depth_ranges(&self, count: usize) -> Outcome<Vec<[f32; 2]>> {
-        // SAFETY: plain data.
-        let empty = unsafe { std::mem::zeroed() };
-        let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
-        let ranges =
-            self.chained_to_configuration(sys::ViewConfigurationDepthRangeEXT { ty, ..empty }, count)?;
-        Ok(ranges.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
-    }
-
-    /// Returns the sizes of motion vectors that are recommended for the configuration's views.
-    pub fn vector_sizes(&self, count: usize) -> Outcome<Vec<[u32; 2]>> {
-        // SAFETY: plain data.
-        let empty = unsafe { std::mem::zeroed() };
-        let ty = sys::FrameSynthesisConfigViewEXT::TYPE;
-        let sizes = self.chained_to_configuration(sys::FrameSynthesisConfigViewEXT { ty, ..empty }, count)?;
-        let size = |size: &sys::FrameSynthesisConfigViewEXT| {
-            [
-                size.recommended_motion_vector_image_rect_width,
-                size.recommended_motion_vector_image_rect_height,
-            ]
-        };
-        Ok(sizes.iter().map(size).collect())
-    }
-
-    /// Returns what the runtime writes to a structure chained to each of the configuration's views.
-    fn chained_to_configuration<T: Copy>(&self, structure: T, count: usize) -> Outcome<Vec<T>> {
-        let mut chained = vec![structure; count];
         // SAFETY: plain data; the types and chains are set below.
-        let empty = unsafe { std::mem::zeroed() };
-        let view = |structure: &mut T| sys::ViewConfigurationView {
+        let (empty, empty_view) =
+            unsafe { (std::mem::zeroed::<sys::ViewConfigurationDepthRangeEXT>(), std::mem::zeroed()) };
+        let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
+        let mut chained = vec![sys::ViewConfigurationDepthRangeEXT { ty, ..empty }; count];
+        let view = |range: &mut sys::ViewConfigurationDepthRangeEXT| sys::ViewConfigurationView {
             ty: sys::ViewConfigurationView::TYPE,
-            next: ptr::from_mut(structure).cast(),
-            ..empty
+            next: ptr::from_mut(range).cast(),
+            ..empty_view
         };
         let mut views: Vec<_> = chained.iter_mut().map(view).collect();
         let (mut number, room) = (0, count as u32);
@@ -52,7 +29,7 @@ impl Client<'_> {
         let result =
             unsafe { call(self.instance, self.system, self.views, room, &mut number, views.as_mut_ptr()) };
         check("xrEnumerateViewConfigurationViews", result)?;
-        Ok(chained)
+        Ok(chained.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
     }
 
     /// Returns what the runtime writes to structures chained to the located views.

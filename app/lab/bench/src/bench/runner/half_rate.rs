@@ -1,12 +1,12 @@
-//! Half the rate of renders: the frame between two, as a runtime makes it of both eyes or of one.
+//! Half the rate of renders: the frame between two, as a runtime makes it of both eyes or of one, and as yoro makes it.
 
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use anyhow::ensure;
+use glam::Vec3;
 use image::RgbImage;
 
-use super::emulated_runtime::Submitted;
 use super::foveation::Way;
 use super::reprojection::{SPREAD, measurement_of};
 use super::{Runner, milliseconds};
@@ -15,11 +15,13 @@ use crate::bench::motion::Motion;
 use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::{HEADSET_RATE, Views};
-use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, View};
+use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, Pose, View};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
-use yoro_metrics::{Channels, SsimWindow, psnr, psnr_where, ssim};
-use yoro_render::stereo::{EyeTarget, Method, MotionTarget, StereoFrame};
+use yoro_metrics::{
+    Channels, EyeCamera, EyePose, SsimWindow, SubmittedEye, psnr, psnr_where, ssim,
+};
+use yoro_render::stereo::{EyeTarget, FramesBetween, Method, MotionTarget, StereoFrame};
 use yoro_render::{DepthImage, DepthReader, PreparedScene};
 
 /// The ways of making the frame between. The runtime is emulated.
@@ -28,6 +30,8 @@ const ONE_EYE: &str = "runtime-one-eye";
 /// The colour of two eyes with the vectors and depth of one: what these alone lose.
 const VECTORS: &str = "runtime-made-vectors";
 const ROTATION: &str = "rotation";
+const DEPTH: &str = "depth-alone";
+const ANY_VIEW: &str = "any-view";
 /// The same frame rendered: by yoro, and the dominant eye's image for both.
 const FULL_RATE: &str = "yoro-full-rate";
 const SAME_IMAGE: &str = "same-image";
@@ -102,6 +106,7 @@ struct Ways {
     whole: Way,
     conventional: Way,
     synthesized: Way,
+    half_rate: Way,
     mono: Way,
     frame: StereoFrame,
     /// Vectors and depth of both eyes.
@@ -120,15 +125,16 @@ struct ReadBack {
 impl Ways {
     fn new(gl: &Rc<Context>, job: &Job, level: FoveationLevel) -> Result<Ways, GlError> {
         let create =
-            |method: Method, level, vectors| Way::new(gl, job, (method, method.name()), level, vectors);
+            |method: Method, level, between| Way::new(gl, job, (method, method.name()), level, between);
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         let target = || RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F));
         Ok(Ways {
             gl: gl.clone(),
-            whole: create(Method::Conventional, FoveationLevel::Off, true)?,
-            conventional: create(Method::Conventional, level, true)?,
-            synthesized: create(Method::Synthesized, level, true)?,
-            mono: create(Method::Mono, level, false)?,
+            whole: create(Method::Conventional, FoveationLevel::Off, FramesBetween::Runtime)?,
+            conventional: create(Method::Conventional, level, FramesBetween::Runtime)?,
+            synthesized: create(Method::Synthesized, level, FramesBetween::Runtime)?,
+            half_rate: create(Method::Synthesized, level, FramesBetween::Method)?,
+            mono: create(Method::Mono, level, FramesBetween::Nobody)?,
             frame: StereoFrame::new(gl, job.eyes.size)?,
             vectors: [target()?, target()?],
             depth: DepthReader::new(gl)?,
@@ -178,6 +184,8 @@ impl Ways {
         self.frame.resize(now.size)?;
         self.resize_vectors(vector_size)?;
         prepared.set_time(then_seconds)?;
+        self.half_rate.render(prepared, &then, &self.frame.targets())?;
+
         prepared.set_time(now_seconds)?;
         let to = self.targets(&then);
         let mut shown = Vec::new();
@@ -187,25 +195,32 @@ impl Ways {
             method.render(prepared, &now, &to)?;
             ensure!(method.has_motion(), "{way} has no motion vectors");
             let read = self.read(eye, now.depth.convention)?;
-            let former = View { size: now.size, ..then.view(eye) };
-            let submitted = Submitted {
+            let vectors: Vec<Vec3> = read.vectors.iter().map(|v| Vec3::from_slice(v)).collect();
+            let submitted = SubmittedEye {
                 rgba: &read.rgba,
-                vectors: &read.vectors,
+                size: now.size,
+                vectors: &vectors,
                 depth: &read.depth,
                 vector_size: read.size,
-                now: now.view(eye),
-                former,
+                camera: camera(&now.view(eye)),
+                previous: camera(&then.view(eye)),
             };
-            let pose = newest.poses[eye.index()];
+            let pose = eye_pose(newest.poses[eye.index()]);
             shown.push((way, image(&submitted.extrapolate(pose, 0.5))));
             if way == ONE_EYE {
-                let submitted = Submitted { rgba: &true_color, ..submitted };
+                let submitted = SubmittedEye { rgba: &true_color, ..submitted };
                 shown.push((VECTORS, image(&submitted.extrapolate(pose, 0.5))));
             } else {
                 shown.push((ROTATION, image(&submitted.rotate(pose))));
                 moving = moves(&read.vectors, read.size, now.size);
                 true_color = read.rgba;
             }
+        }
+        self.half_rate.render(prepared, &now, &self.frame.targets())?;
+        for (way, ahead) in [(DEPTH, 0.0), (ANY_VIEW, 0.5)] {
+            let can = self.half_rate.show_again(&newest, &self.frame.targets(), ahead)?;
+            ensure!(can, "the head has turned too far");
+            shown.push((way, image(&self.frame.rgba(eye))));
         }
 
         prepared.set_time(newest_seconds)?;
@@ -228,25 +243,30 @@ impl Ways {
     fn times(
         &mut self,
         prepared: &mut PreparedScene,
-        [(then, _), (now, now_seconds), _]: [At; 3],
-    ) -> anyhow::Result<[(&'static str, Duration); 4]> {
+        [(then, _), (now, now_seconds), (newest, _)]: [At; 3],
+    ) -> anyhow::Result<[(&'static str, Duration); 5]> {
         self.resize_vectors(now.size.map(|n| n.div_ceil(DIVISOR)))?;
         // Both shadow maps of a moving scene are redrawn by whoever moves it, once for each render.
         prepared.set_time(now_seconds)?;
         let gl = self.gl.clone();
         let (plain, vectors) = (self.frame.targets(), self.targets(&then));
-        let mut all = [CONVENTIONAL, TWO_EYES, FULL_RATE, ONE_EYE].map(|name| (name, Duration::ZERO));
+        let mut all =
+            [CONVENTIONAL, TWO_EYES, FULL_RATE, ONE_EYE, ANY_VIEW].map(|name| (name, Duration::ZERO));
         for is_timed in [false, true] {
             for (name, time) in &mut all {
                 let (method, to, frames) = match *name {
                     CONVENTIONAL => (&mut self.whole, &plain, 1),
                     TWO_EYES => (&mut self.conventional, &vectors, 2),
                     FULL_RATE => (&mut self.synthesized, &plain, 1),
-                    _ => (&mut self.synthesized, &vectors, 2),
+                    ONE_EYE => (&mut self.synthesized, &vectors, 2),
+                    _ => (&mut self.half_rate, &plain, 2),
                 };
                 gl.finish();
                 let begin = Instant::now();
                 method.render(prepared, &now, to)?;
+                if *name == ANY_VIEW {
+                    method.show_again(&newest, to, 0.5)?;
+                }
                 gl.finish();
                 if is_timed {
                     *time = begin.elapsed() / frames;
@@ -254,6 +274,20 @@ impl Ways {
             }
         }
         Ok(all)
+    }
+}
+
+fn eye_pose(Pose { position, orientation }: Pose) -> EyePose {
+    EyePose { position, orientation }
+}
+
+fn camera(view: &View) -> EyeCamera {
+    let f = &view.frustum;
+    let (at_0, slope) = view.depth.inverse_distance_law();
+    EyeCamera {
+        pose: eye_pose(view.pose),
+        tangents: [f.left, f.right, f.bottom, f.top],
+        inverse_distances: [at_0, at_0 + slope],
     }
 }
 
