@@ -104,13 +104,36 @@ pub fn files(folder: &Path) -> anyhow::Result<Vec<(String, PathBuf)>> {
     Ok(found)
 }
 
+/// Makes a folder and its parents.
+///
+/// # Errors
+/// Fails if it cannot be made.
+pub fn make(folder: &Path) -> anyhow::Result<()> {
+    fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))
+}
+
 /// Makes the parent folders of a file.
 ///
 /// # Errors
 /// Fails if they cannot be made.
 pub fn make_parent(file: &Path) -> anyhow::Result<()> {
-    let Some(parent) = file.parent() else { return Ok(()) };
-    fs::create_dir_all(parent).with_context(|| format!("{} cannot be made", parent.display()))
+    file.parent().map_or(Ok(()), make)
+}
+
+/// Returns the content of a file.
+///
+/// # Errors
+/// Fails if the file cannot be read.
+pub fn read(file: &Path) -> anyhow::Result<Vec<u8>> {
+    fs::read(file).with_context(|| format!("{} cannot be read", file.display()))
+}
+
+/// Returns the text in a file.
+///
+/// # Errors
+/// Fails if the file cannot be read, or is no text.
+pub fn read_text(file: &Path) -> anyhow::Result<String> {
+    fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))
 }
 
 #[cfg(test)]
