@@ -1,11 +1,12 @@
 //! Runs cargo.
 
 use std::env;
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 
-use crate::folders::{root, target_folder};
+use crate::folders::{root, target_folder, write};
 
 /// Returns the cargo that runs this program, in the workspace's root.
 pub fn cargo() -> Command {
@@ -61,6 +62,44 @@ pub fn program(name: &str) -> anyhow::Result<Command> {
     let mut command = Command::new(target_folder()?.join("debug").join(name));
     command.current_dir(root());
     Ok(command)
+}
+
+/// Runs a helper, which is a program of its own so that only those compile its dependencies who need it. Returns its
+/// output, and true if it found no fault.
+///
+/// # Errors
+/// Fails if it does not compile, or with its own message.
+pub fn helper(name: &str, arguments: &[&str]) -> anyhow::Result<(String, bool)> {
+    let output = program(name)?.args(arguments).output();
+    let output = output.with_context(|| format!("{name} cannot be started"))?;
+    match output.status.code() {
+        Some(code @ (0 | 1)) => Ok((String::from_utf8_lossy(&output.stdout).into_owned(), code == 0)),
+        _ => bail!("{}", String::from_utf8_lossy(&output.stderr).trim().trim_start_matches("error: ")),
+    }
+}
+
+/// Installs a version of a program that cargo runs as `cargo NAME` in the project's own folder, and returns its path.
+///
+/// # Errors
+/// Fails if it cannot be installed.
+pub fn install(name: &str, version: &str) -> anyhow::Result<PathBuf> {
+    let folder = target_folder()?.join("tools");
+    let (program, stamp) = (folder.join("bin").join(name), folder.join(name).with_extension(version));
+    if program.is_file() && stamp.is_file() {
+        return Ok(program);
+    }
+    let place = folder.display().to_string();
+    // A debug build: it runs for seconds, so that optimizing it would take longer than it saves.
+    let arguments = ["install", name, "--version", version, "--locked", "--debug", "--force", "--quiet"];
+    let arguments = [&arguments[..], &["--no-track", "--root", &place]].concat();
+    announce(&arguments);
+    // A target folder of its own, so that the workspace's has no files that only this program needs.
+    let status = cargo().args(arguments).env_remove("CARGO_TARGET_DIR").status();
+    if !status.context("cargo cannot be started")?.success() {
+        bail!("{name} {version} cannot be installed: see above");
+    }
+    write(&stamp, "")?;
+    Ok(program)
 }
 
 /// Runs cargo, and returns true if it succeeds.

@@ -1,7 +1,9 @@
-//! Text output and exit codes of programs.
+//! Other programs' output, this program's, and exit codes.
 
 use std::io::{self, Write as _};
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
+
+use anyhow::{Context as _, bail};
 
 /// Prints a text to standard output. Ignores errors, since a reader such as `head` may have exited.
 pub fn print(text: &str) {
@@ -18,4 +20,18 @@ pub fn exit_code(outcome: anyhow::Result<bool>) -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// Runs a program, and returns its standard output.
+///
+/// # Errors
+/// Fails if the program is missing, or fails; the error has what it printed.
+pub fn run(command: &mut Command) -> anyhow::Result<String> {
+    let program = command.get_program().to_string_lossy().into_owned();
+    let output = command.output().with_context(|| format!("{program} cannot be started: install it"))?;
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    if !output.status.success() {
+        bail!("{program} failed: {} {}", text(&output.stderr).trim(), text(&output.stdout).trim());
+    }
+    Ok(text(&output.stdout))
 }

@@ -82,12 +82,34 @@ pub fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
 /// # Errors
 /// Fails if something in it cannot be copied.
 pub fn copy_folder(from: &Path, to: &Path) -> anyhow::Result<()> {
-    for entry in fs::read_dir(from).with_context(|| format!("{} cannot be read", from.display()))? {
+    files(from)?.into_iter().try_for_each(|(name, path)| copy(&path, &to.join(name)))
+}
+
+/// Returns the names, relative to a folder, and the paths of all files in it and in its folders, sorted by name.
+///
+/// # Errors
+/// Fails if a folder cannot be read.
+pub fn files(folder: &Path) -> anyhow::Result<Vec<(String, PathBuf)>> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))? {
         let path = entry?.path();
-        let copied = to.join(path.file_name().unwrap_or_default());
-        if path.is_dir() { copy_folder(&path, &copied)? } else { copy(&path, &copied)? }
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if path.is_dir() {
+            found.extend(files(&path)?.into_iter().map(|(file, path)| (format!("{name}/{file}"), path)));
+        } else {
+            found.push((name, path));
+        }
     }
-    Ok(())
+    found.sort();
+    Ok(found)
+}
+
+/// Makes a folder and its parents.
+///
+/// # Errors
+/// Fails if it cannot be made.
+pub fn make(folder: &Path) -> anyhow::Result<()> {
+    fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))
 }
 
 /// Makes the parent folders of a file.
@@ -95,8 +117,23 @@ pub fn copy_folder(from: &Path, to: &Path) -> anyhow::Result<()> {
 /// # Errors
 /// Fails if they cannot be made.
 pub fn make_parent(file: &Path) -> anyhow::Result<()> {
-    let Some(parent) = file.parent() else { return Ok(()) };
-    fs::create_dir_all(parent).with_context(|| format!("{} cannot be made", parent.display()))
+    file.parent().map_or(Ok(()), make)
+}
+
+/// Returns the content of a file.
+///
+/// # Errors
+/// Fails if the file cannot be read.
+pub fn read(file: &Path) -> anyhow::Result<Vec<u8>> {
+    fs::read(file).with_context(|| format!("{} cannot be read", file.display()))
+}
+
+/// Returns the text in a file.
+///
+/// # Errors
+/// Fails if the file cannot be read, or is no text.
+pub fn read_text(file: &Path) -> anyhow::Result<String> {
+    fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))
 }
 
 #[cfg(test)]

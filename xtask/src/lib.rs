@@ -19,15 +19,12 @@ pub mod ndk;
 mod notices;
 mod package;
 mod packages;
-mod publish;
 pub mod release;
 mod rust;
 mod setup;
 mod site;
 mod testing;
 mod web;
-#[cfg(test)]
-mod workflows;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -192,10 +189,10 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             testing::test(&testing::Options { filters, packages, bless, jobs })?;
         }
         Task::Apk { release, yes, openxr_loaders, bundle, quest } => {
-            android::apk(&android::Options { release, yes, openxr_loaders, bundle, quest })?;
+            android::apk(&android::Options { release, yes, openxr_loaders, bundle, quest, quick: false })?;
         }
         Task::Doctor => {
-            let (text, complete) = android::doctor()?;
+            let (text, complete) = android::doctor();
             console::print(&text);
             return Ok(complete);
         }

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-use crate::{console, publish};
+use crate::{cargo, console};
 
 /// The name of the notices in archives, in the APK and beside the page.
 pub const FILE: &str = "NOTICES.txt";
@@ -15,7 +15,8 @@ pub const FILE: &str = "NOTICES.txt";
 /// # Errors
 /// Fails if a licence is not accepted, or cargo fails.
 pub fn text(package: &str, target: &str, features: &[&str]) -> anyhow::Result<String> {
-    let (text, _) = publish::run(&[&["notices", package, target], features].concat())?;
+    let arguments = [&["notices", package, target], features].concat();
+    let (text, _) = cargo::helper("yoro-publish", &arguments)?;
     Ok(text)
 }
 
@@ -31,14 +32,8 @@ pub fn check(archive: &Path, packages: &[&str]) -> anyhow::Result<()> {
     let is_tar = archive.extension().is_some_and(|extension| extension == "xz");
     let mut command = Command::new(if is_tar { "tar" } else { "unzip" });
     command.args(if is_tar { &["--extract", "--to-stdout", "--wildcards", "--file"][..] } else { &["-p"] });
-    let output = command.arg(archive).arg(pattern).output();
-    let output = output.context("tar or unzip cannot be started: apt-get install tar unzip")?;
-    if !output.status.success() {
-        let told = String::from_utf8_lossy(&output.stderr);
-        let told = told.lines().next().unwrap_or_default();
-        bail!("{FILE} of {} cannot be read: {told}", archive.display());
-    }
-    let text = String::from_utf8_lossy(&output.stdout);
+    let text = console::run(command.arg(archive).arg(pattern));
+    let text = text.with_context(|| format!("{FILE} of {} cannot be read", archive.display()))?;
     let has = |name: &str| text.lines().any(|line| line.trim_start().starts_with(&format!("{name} ")));
     if let Some(missing) = packages.iter().find(|name| !has(name)) {
         bail!("{} lacks the notice of {missing}", archive.display());
@@ -51,7 +46,7 @@ pub fn check(archive: &Path, packages: &[&str]) -> anyhow::Result<()> {
 /// # Errors
 /// Fails if cargo fails.
 pub fn are_accepted() -> anyhow::Result<bool> {
-    let (report, passed) = publish::run(&["licences"])?;
+    let (report, passed) = cargo::helper("yoro-publish", &["licences"])?;
     console::print(&report);
     Ok(passed)
 }

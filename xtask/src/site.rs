@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 
-use crate::folders::{copy_folder, remove, target_folder, write};
-use crate::{cargo, console, lint, publish, web};
+use crate::folders::{copy_folder, read_text, remove, target_folder, write};
+use crate::{cargo, console, lint, web};
 
 /// Builds the site, and returns its folder, `target/site`. `release` is a folder with the files of a release.
 ///
@@ -23,12 +23,11 @@ pub fn build(release: Option<&Path>) -> anyhow::Result<PathBuf> {
     copy_folder(&api(&target.join("site-api"))?, &unfinished.join("api"))?;
     // rustdoc's pages have scripts in them, which the page's policy does not allow.
     let headers = unfinished.join("_headers");
-    let text = fs::read_to_string(&headers).with_context(|| format!("{} is missing", headers.display()))?;
-    write(&headers, text + "/api/*\n  ! Content-Security-Policy\n")?;
+    write(&headers, read_text(&headers)? + "/api/*\n  ! Content-Security-Policy\n")?;
     let place = unfinished.display().to_string();
     let release = release.map(|release| release.display().to_string());
     let arguments: Vec<&str> = ["site", &place].into_iter().chain(release.as_deref()).collect();
-    let (report, passed) = publish::run(&arguments)?;
+    let (report, passed) = cargo::helper("yoro-publish", &arguments)?;
     console::print(&report);
     if !passed {
         bail!("links of the site lead nowhere: see above");
@@ -52,6 +51,5 @@ fn api(target: &Path) -> anyhow::Result<PathBuf> {
     if !cargo::succeeds(&arguments, &[]) {
         bail!("the crates cannot be documented: see above");
     }
-    let folder = target.join("doc");
-    Ok(folder)
+    Ok(target.join("doc"))
 }

@@ -1,30 +1,30 @@
 //! Builds the APK with cargo-apk, then repacks it with the completed manifest.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 
-use crate::folders::{root, target_folder, write};
+use crate::folders::{copy, root, target_folder};
 use crate::ndk::stand_in::StandIn;
-use crate::ndk::target::{ARCHITECTURES, PAGE, TARGET_API};
-use crate::notices;
+use crate::ndk::target::{ARCHITECTURES, LOADER, PAGE, TARGET_API};
+use crate::{cargo, notices};
 use crate::rust::{Panic, Rust, anonymous_paths, build_std};
 
-use super::cargo_apk;
 use super::check::{self, Store};
 use super::keystore::Keystore;
-use super::loader::Loaders;
 use super::pack::{Variant, pack, sign};
 use super::toolchain::{self, Surroundings, Toolchain};
 
 /// `apk_name` of android/Cargo.toml.
 const NAME: &str = "yoro";
+/// The version of cargo-apk, which builds the application.
+pub const CARGO_APK: &str = "0.10.0";
 
 /// Build options.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Build a small and fast release with the profile `android`, instead of a debuggable build.
     pub release: bool,
@@ -36,6 +36,8 @@ pub struct Options {
     pub bundle: bool,
     /// Also pack an APK for Meta's store.
     pub quest: bool,
+    /// Compile faster, for tests: the same code, but hardly optimized, and in another folder.
+    pub quick: bool,
 }
 
 /// Arguments of apksigner for a bundle, signed as a JAR. Given the API level, apksigner needs no manifest.
@@ -60,8 +62,7 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let surroundings = Surroundings::here();
     let loaders = options.openxr_loaders.iter().map(|file| Ok((check::loader_abi(file)?, file.as_path())));
-    let loaders = loaders.collect::<anyhow::Result<Vec<_>>>()?;
-    let _loaders = Loaders::place(&loaders, &root().join("android/runtime-libs"))?;
+    let _loaders = Loaders::place(loaders, &root().join("android/runtime-libs"))?;
     let (toolchain, against) = Toolchain::choose(&surroundings);
     eprintln!("building with {toolchain}");
     if surroundings.names_google() && !against.is_empty() {
@@ -69,21 +70,25 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     }
     toolchain::ensure(&toolchain, options.yes)?;
     let target = target_folder()?;
-    let cargo_apk = cargo_apk::ensure()?;
+    let cargo_apk = cargo::install("cargo-apk", CARGO_APK)?;
     let keystore = Keystore::choose(options.release)?;
 
     let (profile, name) = if options.release { ("android", "ANDROID") } else { ("dev", "DEV") };
+    let build = target.join(if options.quick { "android/quick" } else { "android/build" });
     let mut command = Command::new(cargo_apk);
     command
         .args(["apk", "build", "--package", "yoro-android", "--lib", "--profile", profile])
         .current_dir(root())
-        .env("CARGO_TARGET_DIR", target.join("android/build"))
+        .env("CARGO_TARGET_DIR", &build)
         .env(format!("CARGO_APK_{name}_KEYSTORE"), &keystore.path)
         .env(format!("CARGO_APK_{name}_KEYSTORE_PASSWORD"), &keystore.password)
         // std from source is built without unwinding, since the stand-in NDK has no unwinder.
         .env("CARGO_PROFILE_DEV_PANIC", "abort")
         // These flags are for this machine's processor.
         .env_remove("RUSTFLAGS");
+    if options.quick {
+        command.envs([("CARGO_PROFILE_ANDROID_LTO", "off"), ("CARGO_PROFILE_ANDROID_OPT_LEVEL", "1")]);
+    }
     let mut flags = link_flags();
     let (sdk, rust) = match &toolchain {
         Toolchain::Google { sdk, .. } => (sdk.clone(), Rust::own()),
@@ -101,16 +106,19 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     run(&mut command)?;
 
     let folder = if options.release { "android" } else { "debug" };
-    let folder = target.join("android/build").join(folder).join("apk");
+    let folder = build.join(folder).join("apk");
     let android_jar = sdk.join(format!("platforms/android-{TARGET_API}/android.jar"));
     let notices = notices::text("yoro-android", ARCHITECTURES[0].triple, &[])?;
-    let kind = if options.release { "" } else { "-debug" };
+    let kind = match (options.quick, options.release) {
+        (true, _) => "-quick",
+        (false, true) => "",
+        (false, false) => "-debug",
+    };
     let packed = |variant: Variant, suffix: &str| {
         let resources = root().join("android/res");
         let built = pack(variant, &folder, NAME, &android_jar, &resources, &notices, &keystore)?;
         let apk = target.join("apk").join(format!("{NAME}{suffix}{kind}.apk"));
-        let content = fs::read(&built).with_context(|| format!("{} cannot be read", built.display()))?;
-        write(&apk, content)?;
+        copy(&built, &apk)?;
         println!("{}", apk.display());
         anyhow::Ok(apk)
     };
@@ -144,10 +152,50 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
 ///
 /// # Errors
 /// Fails if something cannot be obtained on this machine.
-pub fn ready_for_tests() -> anyhow::Result<()> {
-    let surroundings = Surroundings::here();
-    let (toolchain, _) = Toolchain::choose(&surroundings);
-    toolchain::ensure(&toolchain, true)
+pub fn ready_for_tests() -> anyhow::Result<PathBuf> {
+    let (toolchain, _) = Toolchain::choose(&Surroundings::here());
+    toolchain::ensure(&toolchain, true)?;
+    Ok(PathBuf::new())
+}
+
+/// Builds the APKs for tests.
+///
+/// # Errors
+/// Those of [`apk`].
+pub fn apk_for_tests() -> anyhow::Result<PathBuf> {
+    apk(&Options { release: true, yes: true, quest: true, quick: true, ..Options::default() })
+}
+
+/// OpenXR loaders of others in the folder that cargo-apk packs, with a subfolder per architecture. They precede the
+/// application's own way to the runtime, and support API layers. They are deleted when this is dropped.
+struct Loaders(Vec<PathBuf>);
+
+impl Loaders {
+    /// Copies each file to the folder of its architecture, of which each has one at most.
+    fn place<'a>(
+        files: impl Iterator<Item = anyhow::Result<(String, &'a Path)>>,
+        folder: &Path,
+    ) -> anyhow::Result<Self> {
+        let mut placed = Loaders(Vec::new());
+        for file in files {
+            let (abi, file) = file?;
+            let place = folder.join(abi).join(LOADER);
+            if placed.0.contains(&place) {
+                bail!("{} is the second OpenXR loader for one processor: name one of them", file.display());
+            }
+            copy(file, &place)?;
+            placed.0.push(place);
+        }
+        Ok(placed)
+    }
+}
+
+impl Drop for Loaders {
+    fn drop(&mut self) {
+        for copy in &self.0 {
+            fs::remove_file(copy).ok();
+        }
+    }
 }
 
 /// Returns the linker flags for any NDK: pages of 16 KiB, and an error for symbols that no public library has.
@@ -174,4 +222,26 @@ fn run(command: &mut Command) -> anyhow::Result<()> {
         bail!("cargo-apk failed: see above");
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_loader_is_there_until_the_apk_is_built() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("loader.so");
+        fs::write(&file, "").unwrap();
+        let copy = folder.path().join("arm64-v8a").join(LOADER);
+        let place = |count| {
+            let once = (0..count).map(|_| Ok(("arm64-v8a".to_owned(), file.as_path())));
+            Loaders::place(once, folder.path())
+        };
+        let placed = place(1).unwrap();
+        assert!(copy.is_file());
+        drop(placed);
+        assert!(!copy.exists());
+        assert!(place(2).is_err() && !copy.exists());
+    }
 }

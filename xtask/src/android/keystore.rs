@@ -6,6 +6,9 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
+use crate::console;
+use crate::folders::make;
+
 /// The variable with the path of the release keystore. Its password is in the variable with `_PASSWORD` appended.
 const RELEASE: &str = "CARGO_APK_RELEASE_KEYSTORE";
 
@@ -66,8 +69,7 @@ impl Keystore {
         let path = folder.join("debug.keystore");
         let keystore = Self { path, password: "android".to_owned(), debug: true };
         if !keystore.path.exists() {
-            std::fs::create_dir_all(&folder)
-                .with_context(|| format!("{} cannot be made", folder.display()))?;
+            make(&folder)?;
             keystore.generate()?;
         }
         Ok(keystore)
@@ -75,17 +77,13 @@ impl Keystore {
 
     fn generate(&self) -> anyhow::Result<()> {
         eprintln!("making a debug key: {}", self.path.display());
-        let output = Command::new("keytool")
+        let mut keytool = Command::new("keytool");
+        keytool
             .args(["-genkeypair", "-alias", "androiddebugkey", "-keyalg", "RSA", "-keysize", "2048"])
             .args(["-validity", "10000", "-dname", "CN=Android Debug,O=Android,C=US"])
             .args(["-storepass", &self.password, "-keypass", &self.password, "-keystore"])
-            .arg(&self.path)
-            .output()
-            .context("keytool cannot be started: install a Java runtime (default-jre-headless)")?;
-        if !output.status.success() {
-            bail!("keytool cannot make a debug key: {}", String::from_utf8_lossy(&output.stdout).trim());
-        }
-        Ok(())
+            .arg(&self.path);
+        console::run(&mut keytool).map(drop)
     }
 }
 

@@ -1,6 +1,5 @@
 //! A cargo for libraries that others include in their Android applications.
 
-use std::fs;
 use std::process::Command;
 
 use anyhow::Context as _;
@@ -38,15 +37,11 @@ pub fn cargo(architecture: Architecture) -> anyhow::Result<Command> {
             // Separate from the application's sysroot, which is for an older Android.
             let folder = target_folder()?.join("android/capi/sysroot");
             let libraries = folder.join("usr/lib");
-            fs::create_dir_all(&libraries)
-                .with_context(|| format!("{} cannot be made", libraries.display()))?;
             make_libraries(&libraries, architecture, API)?;
             make_unwinder(&libraries, architecture, "")?;
             flags.push(format!("-Clinker={}", stand_in.clang().display()));
-            flags.extend(
-                ["-fuse-ld=lld".to_owned(), format!("--sysroot={}", folder.display())]
-                    .map(|a| format!("-Clink-arg={a}")),
-            );
+            flags.push("-Clink-arg=-fuse-ld=lld".to_owned());
+            flags.push(format!("-Clink-arg=--sysroot={}", folder.display()));
             Rust::with_source()
         }
     };

@@ -1,14 +1,12 @@
 //! Repacks cargo-apk's APK with the completed manifest.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
-
 use super::keystore::Keystore;
 use super::manifest;
-use crate::folders::write;
+use crate::console::run;
+use crate::folders::{read_text, write};
 use crate::ndk::sdk::build_tool;
 use crate::ndk::target::ARCHITECTURES;
 use crate::notices;
@@ -38,18 +36,14 @@ pub fn pack(
     keystore: &Keystore,
 ) -> anyhow::Result<PathBuf> {
     let at = |file: &str| folder.join(file);
-    let written = at("AndroidManifest.xml");
-    let text =
-        fs::read_to_string(&written).with_context(|| format!("{} cannot be read", written.display()))?;
+    let text = read_text(&at("AndroidManifest.xml"))?;
     let text = match variant {
         Variant::All => manifest::complete(&text)?,
         Variant::Quest => manifest::for_quest(&text)?,
     };
     // aapt requires this file name.
     let whole = at("complete/AndroidManifest.xml");
-    fs::create_dir_all(at("complete"))
-        .and_then(|()| fs::write(&whole, text))
-        .with_context(|| format!("{} cannot be written", whole.display()))?;
+    write(&whole, text)?;
     let assets = at("assets");
     write(&assets.join(notices::FILE), notices)?;
     let [unaligned, finished] =
@@ -90,15 +84,4 @@ pub fn sign(file: &Path, keystore: &Keystore, arguments: &[&str]) -> anyhow::Res
 fn libraries(apk: &Path) -> anyhow::Result<Vec<String>> {
     let listing = run(Command::new(build_tool("aapt")?).arg("list").arg(apk))?;
     Ok(listing.lines().filter(|name| name.starts_with("lib/")).map(str::to_owned).collect())
-}
-
-/// Runs a tool, and returns its standard output.
-fn run(command: &mut Command) -> anyhow::Result<String> {
-    let program = command.get_program().to_string_lossy().into_owned();
-    let output = command.output().with_context(|| format!("{program} cannot be started"))?;
-    if !output.status.success() {
-        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
-        bail!("{program} failed: {} {}", text(&output.stderr), text(&output.stdout));
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

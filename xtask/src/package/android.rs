@@ -1,11 +1,8 @@
 //! An AAR with prefab, which is how Gradle provides native libraries to CMake and ndk-build.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
-
-use crate::folders::{remove, root, target_folder, write};
+use crate::folders::{read, remove, root, target_folder, write};
 use crate::ndk::target::{ARCHITECTURES, Architecture};
 use crate::notices;
 
@@ -65,11 +62,6 @@ pub fn licences(package: &str) -> anyhow::Result<Vec<(String, Vec<u8>)>> {
         files.push((format!("META-INF/{name}"), read(&root().join(name))?));
     }
     Ok(files)
-}
-
-/// Returns the content of a file.
-pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
-    fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
 }
 
 /// Returns the manifest of an AAR.

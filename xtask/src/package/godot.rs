@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use crate::folders::root;
+use crate::folders::{read, root};
 
 use super::VERSION;
-use super::android::{pack, read};
+use super::android::pack;
 
 use crate::godot::{ADDON, files};
 

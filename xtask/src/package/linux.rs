@@ -1,4 +1,5 @@
-//! An archive for Linux: header, libraries, files for pkg-config and CMake, examples.
+//! Archives for Linux: what all have in common, and that of the C library with header, libraries, files for pkg-config and
+//! CMake, examples.
 
 use std::env::consts::ARCH;
 use std::fs;
@@ -6,83 +7,129 @@ use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 
-use crate::arm64;
-use crate::cargo::cargo;
-use crate::folders::{copy, remove, root, target_folder, write};
-use crate::notices;
+use crate::console::run;
+use crate::folders::{copy, copy_folder, read_text, remove, root, target_folder, write};
+use crate::{arm64, cargo, notices};
 
 use super::portable::{self, OLDEST_GLIBC};
 use super::texts::{cmake, cmake_version, manual, pkg_config, readme, soname, with_links};
-use super::{Built, VERSION, build};
+use super::{VERSION, build};
 
-/// Makes the package for this machine.
-pub fn native(folder: &Path) -> anyhow::Result<PathBuf> {
-    let target = target_folder()?;
-    let built = portable(cargo(), None, portable::native_compiler(), &target)?;
-    archive(&built, ARCH, "strip", folder)
+/// A kind of machine that archives are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Machine {
+    /// This machine's processor.
+    Native,
+    /// arm64, by this machine's clang and Debian's arm64 libraries.
+    Arm64,
 }
 
-/// Makes the package for arm64, with this machine's clang and Debian's arm64 libraries.
-pub fn aarch64(folder: &Path) -> anyhow::Result<PathBuf> {
-    let mut compiler = Command::new("clang");
-    compiler.arg("--target=aarch64-linux-gnu");
-    let target = target_folder()?.join("android/arm64/capi");
-    let built = portable(arm64::cargo()?, Some(arm64::TRIPLE), compiler, &target)?;
-    archive(&built, "aarch64", "llvm-strip", folder)
+impl Machine {
+    /// Returns the architecture's name.
+    pub fn architecture(self) -> &'static str {
+        if self == Self::Native { ARCH } else { "aarch64" }
+    }
+
+    /// Returns the target to be named to cargo.
+    pub fn target(self) -> Option<&'static str> {
+        (self == Self::Arm64).then_some(arm64::TRIPLE)
+    }
+
+    /// Returns cargo, whose output does not contain the builder's folders.
+    ///
+    /// # Errors
+    /// Fails if something cannot be obtained on this machine.
+    pub fn cargo(self) -> anyhow::Result<Command> {
+        let mut cargo = if self == Self::Native { cargo::cargo() } else { arm64::cargo()? };
+        portable::set_flags(&mut cargo);
+        Ok(cargo)
+    }
+
+    /// Returns cargo's output folder.
+    ///
+    /// # Errors
+    /// Fails if the target folder is unknown.
+    pub fn folder(self) -> anyhow::Result<PathBuf> {
+        let target = target_folder()?;
+        Ok(if self == Self::Native { target } else { target.join("android/arm64/capi") })
+    }
+
+    /// Removes symbols from a file.
+    ///
+    /// # Errors
+    /// Fails if the tool is missing or fails.
+    pub fn strip(self, arguments: &[&str], file: &Path) -> anyhow::Result<()> {
+        let strip = if self == Self::Native { "strip" } else { "llvm-strip" };
+        run(Command::new(strip).args(arguments).arg(file)).map(drop)
+    }
+
+    /// Packs `NAME-VERSION-linux-ARCHITECTURE.tar.xz` in `folder`, and returns its path. `fill` writes the files, and returns
+    /// the README. The licences, and the notices of what `package` contains, are written to `documents` in the archive.
+    ///
+    /// # Errors
+    /// Fails if `fill` fails, or a file cannot be written.
+    pub fn pack(
+        self,
+        folder: &Path,
+        name: &str,
+        package: &str,
+        documents: &str,
+        fill: impl FnOnce(&Path) -> anyhow::Result<String>,
+    ) -> anyhow::Result<PathBuf> {
+        let architecture = self.architecture();
+        let name = format!("{name}-{VERSION}-linux-{architecture}");
+        let content = folder.join(&name);
+        remove(&content)?;
+        let readme = fill(&content)?;
+        write(&content.join("README.md"), readme)?;
+        let documents = content.join(documents);
+        for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
+            copy(&root().join(licence), &documents.join(licence))?;
+        }
+        let notices = notices::text(package, &format!("{architecture}-unknown-linux-gnu"), &[])?;
+        write(&documents.join(notices::FILE), notices)?;
+        let packed = tar(folder, &name)?;
+        remove(&content)?;
+        Ok(packed)
+    }
 }
 
-/// Builds the library so that it runs on old systems and does not contain the builder's folders.
-fn portable(
-    mut cargo: Command,
-    target: Option<&str>,
-    mut compiler: Command,
-    folder: &Path,
-) -> anyhow::Result<Built> {
-    portable::set_flags(&mut cargo);
-    let old_functions = portable::old_functions(&mut compiler, folder)?;
-    let built = build(cargo, target, &soname(), &[&old_functions], folder)?;
+/// Packs the C library, and returns the archive's path.
+pub fn library(machine: Machine, folder: &Path) -> anyhow::Result<PathBuf> {
+    let output = machine.folder()?;
+    let mut compiler = Command::new(if machine == Machine::Native { "cc" } else { "clang" });
+    if machine == Machine::Arm64 {
+        compiler.arg("--target=aarch64-linux-gnu");
+    }
+    let old_functions = portable::old_functions(&mut compiler, &output)?;
+    let built = build(machine.cargo()?, machine.target(), &soname(), &[&old_functions], &output)?;
     portable::check(&built.shared)?;
-    Ok(built)
-}
-
-/// Packs `libyoro-VERSION-linux-ARCHITECTURE.tar.xz`, and returns its path.
-fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> anyhow::Result<PathBuf> {
-    let name = format!("libyoro-{VERSION}-linux-{architecture}");
-    let content = folder.join(&name);
-    remove(&content)?;
-    let package = root().join("app/engines/c");
-    copy(&package.join("include/yoro.h"), &content.join("include/yoro.h"))?;
-    let library = content.join("lib");
-    let file = format!("libyoro.so.{VERSION}");
-    copy(&built.shared, &library.join(&file))?;
-    for link in [soname().as_str(), "libyoro.so"] {
-        symlink(&file, library.join(link)).with_context(|| format!("{link} cannot be made"))?;
-    }
-    copy(&built.archive, &library.join("libyoro.a"))?;
-    run(Command::new(strip).arg("--strip-debug").arg(library.join("libyoro.a")))?;
-    portable::check(&library.join("libyoro.a"))?;
-    write(&library.join("pkgconfig/yoro.pc"), pkg_config(&built.needs))?;
-    write(&library.join("cmake/yoro/yoro-config.cmake"), cmake(&built.needs))?;
-    write(&library.join("cmake/yoro/yoro-config-version.cmake"), cmake_version())?;
-    let examples = package.join("examples");
-    for entry in fs::read_dir(&examples).context("app/engines/c/examples cannot be read")? {
-        let name = entry.context("app/engines/c/examples cannot be read")?.file_name();
-        copy(&examples.join(&name), &content.join("share/yoro/examples").join(&name))?;
-    }
-    let documents = content.join("share/doc/yoro");
-    for document in ["LICENSE-APACHE", "LICENSE-MIT", "docs/pictures/integration-mistakes.png"] {
-        let name = Path::new(document).file_name().unwrap_or_default();
-        copy(&root().join(document), &documents.join(name))?;
-    }
-    let notices = notices::text("yoro-c", &format!("{architecture}-unknown-linux-gnu"), &[])?;
-    write(&documents.join(notices::FILE), notices)?;
-    let guide = root().join("docs/engines.md");
-    let text = fs::read_to_string(&guide).with_context(|| format!("{} cannot be read", guide.display()))?;
-    write(&documents.join("guide.md"), with_links(&manual(&text), packaged))?;
-    write(&content.join("README.md"), readme(architecture, OLDEST_GLIBC))?;
-    tar(folder, &name)
+    machine.pack(folder, "libyoro", "yoro-c", "share/doc/yoro", |content| {
+        let package = root().join("app/engines/c");
+        copy(&package.join("include/yoro.h"), &content.join("include/yoro.h"))?;
+        copy_folder(&package.join("examples"), &content.join("share/yoro/examples"))?;
+        let library = content.join("lib");
+        let file = format!("libyoro.so.{VERSION}");
+        copy(&built.shared, &library.join(&file))?;
+        for link in [soname().as_str(), "libyoro.so"] {
+            symlink(&file, library.join(link)).with_context(|| format!("{link} cannot be made"))?;
+        }
+        let archive = library.join("libyoro.a");
+        copy(&built.archive, &archive)?;
+        machine.strip(&["--strip-debug"], &archive)?;
+        portable::check(&archive)?;
+        write(&library.join("pkgconfig/yoro.pc"), pkg_config(&built.needs))?;
+        write(&library.join("cmake/yoro/yoro-config.cmake"), cmake(&built.needs))?;
+        write(&library.join("cmake/yoro/yoro-config-version.cmake"), cmake_version())?;
+        let documents = content.join("share/doc/yoro");
+        let picture = "integration-mistakes.png";
+        copy(&root().join("docs/pictures").join(picture), &documents.join(picture))?;
+        let guide = read_text(&root().join("docs/engines.md"))?;
+        write(&documents.join("guide.md"), with_links(&manual(&guide), packaged))?;
+        Ok(readme(machine.architecture(), OLDEST_GLIBC))
+    })
 }
 
 /// Packs a folder in `folder` as `NAME.tar.xz` beside it, and returns its path.
@@ -109,16 +156,6 @@ fn packaged(target: &str) -> Option<String> {
         "pictures/integration-mistakes.png" => Some("integration-mistakes.png".into()),
         _ => example.or_else(|| target.starts_with('#').then(|| target.to_owned())),
     }
-}
-
-/// Runs a program whose output nobody reads.
-pub fn run(command: &mut Command) -> anyhow::Result<()> {
-    let program = command.get_program().to_string_lossy().into_owned();
-    let output = command.output().with_context(|| format!("{program} cannot be started: install it"))?;
-    if !output.status.success() {
-        bail!("{program} failed: {}", String::from_utf8_lossy(&output.stderr).trim());
-    }
-    Ok(())
 }
 
 #[cfg(test)]

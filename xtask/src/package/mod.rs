@@ -3,8 +3,7 @@
 
 mod android;
 mod godot;
-mod layer;
-pub mod layer_linux;
+pub mod layer;
 pub mod linux;
 pub mod portable;
 mod texts;
@@ -18,7 +17,9 @@ use anyhow::{Context as _, bail};
 use clap::ValueEnum;
 
 use crate::apt::{self, Need};
-use crate::folders::{root, target_folder};
+use crate::folders::{make, root, target_folder};
+
+use linux::Machine;
 
 pub use layer::aar_for_tests as layer_for_tests;
 
@@ -53,18 +54,18 @@ pub enum Target {
 pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
     let targets = if targets.is_empty() { Target::value_variants() } else { targets };
     let folder = target_folder()?.join("package");
-    fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
-    let make = |target: &Target| match target {
-        Target::Linux => linux::native(&folder),
-        Target::LinuxAarch64 => linux::aarch64(&folder),
+    make(&folder)?;
+    let pack = |target: &Target| match target {
+        Target::Linux => linux::library(Machine::Native, &folder),
+        Target::LinuxAarch64 => linux::library(Machine::Arm64, &folder),
         Target::Android => android::aar(&folder),
         Target::AndroidLayer => layer::aar(&folder),
-        Target::LayerLinux => layer_linux::native(&folder),
-        Target::LayerLinuxAarch64 => layer_linux::aarch64(&folder),
+        Target::LayerLinux => layer::archive(Machine::Native, &folder),
+        Target::LayerLinuxAarch64 => layer::archive(Machine::Arm64, &folder),
         Target::Godot => godot::zip(&folder),
         Target::Three => three::tarball(&folder),
     };
-    targets.iter().map(make).collect()
+    targets.iter().map(pack).collect()
 }
 
 /// Installs the tools by which people take the package for Linux into their programs.

@@ -1,14 +1,13 @@
 //! Makes libraries portable: they only call functions of old C libraries, and hold nothing of the builder's machine.
 
-use std::env::consts::ARCH;
 use std::ffi::OsStr;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-use crate::folders::{root, write};
+use crate::console::run;
+use crate::folders::{read, root, write};
 use crate::rust::anonymous_paths;
 
 /// The oldest supported glibc, which Debian 10, Ubuntu 18.10 and RHEL 8 have.
@@ -43,12 +42,7 @@ __attribute__((visibility("hidden"))) int gettid(void) { return (int)syscall(GET
 pub fn old_functions(compiler: &mut Command, folder: &Path) -> anyhow::Result<PathBuf> {
     let (source, object) = (folder.join("old_functions.c"), folder.join("old_functions.o"));
     write(&source, OLD_FUNCTIONS)?;
-    let program = compiler.get_program().to_string_lossy().into_owned();
-    let output = compiler.args(["-c", "-O2", "-fPIC", "-o"]).arg(&object).arg(&source).output();
-    let output = output.with_context(|| format!("{program} cannot be started: install it"))?;
-    if !output.status.success() {
-        bail!("{program} failed: {}", String::from_utf8_lossy(&output.stderr).trim());
-    }
+    run(compiler.args(["-c", "-O2", "-fPIC", "-o"]).arg(&object).arg(&source))?;
     Ok(object)
 }
 
@@ -62,7 +56,7 @@ pub fn set_flags(cargo: &mut Command) {
 
 /// Checks that a library runs with the oldest supported glibc, and contains none of the builder's folders.
 pub fn check(file: &Path) -> anyhow::Result<()> {
-    let content = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
+    let content = read(file)?;
     let newest = newest_glibc(&content);
     if newest.is_some_and(|newest| newest > OLDEST_GLIBC) {
         let ((major, minor), (old_major, old_minor)) = (newest.unwrap_or_default(), OLDEST_GLIBC);
@@ -78,7 +72,7 @@ pub fn check(file: &Path) -> anyhow::Result<()> {
 /// Checks that a program or a library contains none of the builder's folders, and returns the oldest glibc that it runs
 /// with.
 pub fn needed_glibc(file: &Path) -> anyhow::Result<(u32, u32)> {
-    let content = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
+    let content = read(file)?;
     check_folders(file, &content)?;
     newest_glibc(&content).with_context(|| format!("{} names no version of glibc", file.display()))
 }
@@ -112,12 +106,6 @@ fn newest_glibc(content: &[u8]) -> Option<(u32, u32)> {
     versions.max()
 }
 
-/// Returns this machine's C compiler.
-pub fn native_compiler() -> Command {
-    debug_assert!(matches!(ARCH, "x86_64" | "aarch64"), "glibc's versions of {ARCH} are not known");
-    Command::new("cc")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -132,17 +120,15 @@ mod tests {
     /// The check fails for libraries that a package must not contain.
     #[test]
     fn newer_functions_and_the_builders_folders_are_found() {
-        let folder = std::env::temp_dir().join(format!("yoro-portable-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
-        let outcome = |name: &str, content: String| {
-            let file = folder.join(name);
-            fs::write(&file, content).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let outcome = |content: &str| {
+            let file = folder.path().join("library");
+            write(&file, content).unwrap();
             check(&file).map_err(|error| error.to_string())
         };
-        assert_eq!(outcome("old", "\0GLIBC_2.17\0/rustc/library/std/src".into()), Ok(()));
-        assert!(outcome("new", "\0GLIBC_2.33\0".into()).unwrap_err().contains("glibc 2.33"));
+        assert_eq!(outcome("\0GLIBC_2.17\0/rustc/library/std/src"), Ok(()));
+        assert!(outcome("\0GLIBC_2.33\0").unwrap_err().contains("glibc 2.33"));
         let own = format!("\0{}/app/core/src/lib.rs\0", root().display());
-        assert!(outcome("folder", own).unwrap_err().contains("builder's folder"));
-        fs::remove_dir_all(&folder).unwrap();
+        assert!(outcome(&own).unwrap_err().contains("builder's folder"));
     }
 }

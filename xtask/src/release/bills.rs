@@ -3,12 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
-
-use crate::folders::{remove, root, target_folder, write};
+use crate::console::run;
+use crate::folders::{read_text, remove, root, target_folder, write};
 use crate::package::VERSION;
-use crate::package::linux::run;
-use crate::{arm64, web};
+use crate::{arm64, cargo, web};
 
 const TOOL: &str = "0.5.9";
 pub const FORMAT: &str = "1.5";
@@ -62,7 +60,7 @@ const FILES: [(&str, &[(&str, &str)]); 4] = [
 /// # Errors
 /// Fails if the tool cannot be installed, or fails.
 pub fn make(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let tool = install()?;
+    let tool = cargo::install("cargo-cyclonedx", TOOL)?;
     // The tool writes beside the manifest of every package: into a copy.
     let copy = target_folder()?.join("bills").join(PLACE);
     remove(&copy)?;
@@ -70,22 +68,13 @@ pub fn make(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut made = Vec::new();
     for (target, files) in FILES {
         let mut command = Command::new(&tool);
-        command.args([
-            "cyclonedx",
-            "--quiet",
-            "--format",
-            "json",
-            "--spec-version",
-            FORMAT,
-            "--no-build-deps",
-        ]);
-        command.args(["--override-filename", NAME, "--target", target]);
+        command.args(["cyclonedx", "--quiet", "--format", "json", "--spec-version", FORMAT]);
+        command.args(["--no-build-deps", "--override-filename", NAME, "--target", target]);
         command.arg("--manifest-path").arg(copy.join("Cargo.toml")).env("SOURCE_DATE_EPOCH", "0");
         run(&mut command)?;
         for (name, package) in files {
             let bill = copy.join(package).join(NAME).with_extension("json");
-            let text =
-                std::fs::read_to_string(&bill).with_context(|| format!("{} was not made", bill.display()))?;
+            let text = read_text(&bill)?;
             let file = folder.join(name.replace("{}", VERSION) + ENDING);
             write(&file, text.replace(&copy.display().to_string(), &format!("/{PLACE}")))?;
             made.push(file);
@@ -93,32 +82,4 @@ pub fn make(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     }
     remove(&copy)?;
     Ok(made)
-}
-
-/// Installs the tool in the project's own folder, and returns its path.
-fn install() -> anyhow::Result<PathBuf> {
-    let folder = target_folder()?.join("tools");
-    let program = folder.join("bin/cargo-cyclonedx");
-    let version = Command::new(&program).args(["cyclonedx", "--version"]).output();
-    if version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim().ends_with(TOOL)) {
-        return Ok(program);
-    }
-    // A debug build, as it runs for seconds.
-    let mut install = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    install.args([
-        "install",
-        "cargo-cyclonedx",
-        "--version",
-        TOOL,
-        "--locked",
-        "--debug",
-        "--force",
-        "--quiet",
-    ]);
-    install.args(["--no-track", "--root"]).arg(&folder).env_remove("CARGO_TARGET_DIR");
-    eprintln!("$ cargo install cargo-cyclonedx --version {TOOL} --locked --root {}", folder.display());
-    if !install.status().context("cargo cannot be started")?.success() {
-        bail!("cargo-cyclonedx {TOOL} cannot be installed: see above");
-    }
-    Ok(program)
 }

@@ -1,13 +1,13 @@
 //! The files of a release: what makes them, whom they are for, how they were tested.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::ValueEnum;
 
 use crate::android::{self, Options, check};
-use crate::folders::{copy, copy_folder, remove, target_folder};
+use crate::folders::{copy, copy_folder, make, remove, target_folder};
+use crate::package::linux::Machine;
 use crate::package::{Target, VERSION, package};
 use crate::{cargo, kit, lint};
 
@@ -67,105 +67,32 @@ const APPLICATION: &[&str] = &["glow", "android-properties", "The font B612 Mono
 
 const NO_DEVICE: &str = "a device";
 
-/// The descriptions, the first that fits counts.
+/// The descriptions, the first that fits counts: parts of names, title, tested, untested, same, notices.
 pub const DESCRIPTIONS: [Description; 12] = [
-    Description {
-        parts: ["yoro-openxr-layer", "linux"],
-        title: "OpenXR applications that render one view",
-        tested: "x86_64, of another build: hello_xr on Monado",
-        untested: "arm64, headsets, Steam Frame",
-        same: Same::Compilers,
-        notices: LIBRARIES,
-    },
-    Description {
-        parts: ["yoro-openxr-layer", ".aar"],
-        title: "the same for Android applications",
-        tested: "another build of it, in the simulated Android host",
-        untested: NO_DEVICE,
-        same: Same::Compilers,
-        notices: LIBRARIES,
-    },
-    Description {
-        parts: ["libyoro", "linux"],
-        title: "C, C++ and others: pkg-config, CMake",
-        tested: "x86_64: its README's commands, pictures against Rust's; arm64: it is linked",
-        untested: "arm64 devices",
-        same: Same::Compilers,
-        notices: LIBRARIES,
-    },
-    Description {
-        parts: ["yoro-", "linux"],
-        title: "the program: render, measure, stream, OpenXR",
-        tested: "it renders a scene, arm64 in qemu; x86_64: all tests, of another build",
-        untested: "headsets, arm64 devices, Steam Frame",
-        same: Same::Compilers,
-        notices: &["openh264-sys2", "clap", "rustls"],
-    },
-    Description {
-        parts: ["yoro-", "-quest.apk"],
-        title: "Meta's store",
-        tested: "check-apk --store quest; its library in the simulated Android host",
-        untested: "a Quest, the store",
-        same: Same::Key,
-        notices: APPLICATION,
-    },
-    Description {
-        parts: ["yoro-", ".apk"],
-        title: "phones, all headsets, sideloading",
-        tested: "check-apk, the simulated Android host",
-        untested: NO_DEVICE,
-        same: Same::Key,
-        notices: APPLICATION,
-    },
-    Description {
-        parts: ["yoro-", ".aab"],
-        title: "Google Play, phones and Android XR",
-        tested: "check-apk --store play",
-        untested: "a device, bundletool, the store",
-        same: Same::Key,
-        notices: APPLICATION,
-    },
-    Description {
-        parts: ["yoro-", ".aar"],
-        title: "the C library for Android, by prefab",
-        tested: "it is linked with public names alone",
-        untested: NO_DEVICE,
-        same: Same::Compilers,
-        notices: LIBRARIES,
-    },
-    Description {
-        parts: ["yoro-kit", ".zip"],
-        title: "engines that want no library: shaders and a header",
-        tested: "pictures against the library's",
-        untested: "",
-        same: Same::Anywhere,
-        notices: &[],
-    },
-    Description {
-        parts: ["yoro-godot", ".zip"],
-        title: "Godot",
-        tested: "Godot opens it, pictures against its second camera",
-        untested: "GPUs",
-        same: Same::Anywhere,
-        notices: &[],
-    },
-    Description {
-        parts: ["yoro-three", ".tgz"],
-        title: "three.js",
-        tested: "installed and bundled, pictures against three's own eyes",
-        untested: "headsets",
-        same: Same::Compilers,
-        notices: &[],
-    },
-    Description {
-        parts: ["", ".crate"],
-        title: "Rust, as the registry takes them",
-        tested: "all tests, before they are packed",
-        untested: "",
-        same: Same::Compilers,
-        notices: &[],
-    },
+    describe(["yoro-openxr-layer", "linux"], "OpenXR applications that render one view", "x86_64, of another build: hello_xr on Monado", "arm64, headsets, Steam Frame", Same::Compilers, LIBRARIES),
+    describe(["yoro-openxr-layer", ".aar"], "the same for Android applications", "another build of it, in the simulated Android host", NO_DEVICE, Same::Compilers, LIBRARIES),
+    describe(["libyoro", "linux"], "C, C++ and others: pkg-config, CMake", "x86_64: its README's commands, pictures against Rust's; arm64: it is linked", "arm64 devices", Same::Compilers, LIBRARIES),
+    describe(["yoro-", "linux"], "the program: render, measure, stream, OpenXR", "it renders a scene, arm64 in qemu; x86_64: all tests, of another build", "headsets, arm64 devices, Steam Frame", Same::Compilers, &["openh264-sys2", "clap", "rustls"]),
+    describe(["yoro-", "-quest.apk"], "Meta's store", "check-apk --store quest; its library in the simulated Android host", "a Quest, the store", Same::Key, APPLICATION),
+    describe(["yoro-", ".apk"], "phones, all headsets, sideloading", "check-apk, the simulated Android host", NO_DEVICE, Same::Key, APPLICATION),
+    describe(["yoro-", ".aab"], "Google Play, phones and Android XR", "check-apk --store play", "a device, bundletool, the store", Same::Key, APPLICATION),
+    describe(["yoro-", ".aar"], "the C library for Android, by prefab", "it is linked with public names alone", NO_DEVICE, Same::Compilers, LIBRARIES),
+    describe(["yoro-kit", ".zip"], "engines that want no library: shaders and a header", "pictures against the library's", "", Same::Anywhere, &[]),
+    describe(["yoro-godot", ".zip"], "Godot", "Godot opens it, pictures against its second camera", "GPUs", Same::Anywhere, &[]),
+    describe(["yoro-three", ".tgz"], "three.js", "installed and bundled, pictures against three's own eyes", "headsets", Same::Compilers, &[]),
+    describe(["", ".crate"], "Rust, as the registry takes them", "all tests, before they are packed", "", Same::Compilers, &[]),
 ];
+
+const fn describe(
+    parts: [&'static str; 2],
+    title: &'static str,
+    tested: &'static str,
+    untested: &'static str,
+    same: Same,
+    notices: &'static [&'static str],
+) -> Description {
+    Description { parts, title, tested, untested, same, notices }
+}
 
 impl Item {
     /// All items, in the order in which they are made.
@@ -193,9 +120,9 @@ impl Item {
     /// Fails if something is missing or does not compile.
     pub fn make(self) -> anyhow::Result<Vec<PathBuf>> {
         let folder = target_folder()?.join("package");
-        fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+        make(&folder)?;
         match self {
-            Item::Program => Ok(vec![program::native(&folder)?, program::aarch64(&folder)?]),
+            Item::Program => Ok(vec![program::archive(Machine::Native, &folder)?, program::archive(Machine::Arm64, &folder)?]),
             Item::Apk => apks(&folder),
             Item::Layer => package(&[Target::LayerLinux, Target::LayerLinuxAarch64, Target::AndroidLayer]),
             Item::Library => package(&[Target::Linux, Target::LinuxAarch64, Target::Android]),
@@ -211,7 +138,7 @@ impl Item {
 
 /// Builds the APKs and the bundle, under names with the version.
 fn apks(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let options = Options { release: true, yes: true, openxr_loaders: Vec::new(), bundle: true, quest: true };
+    let options = Options { release: true, yes: true, bundle: true, quest: true, ..Options::default() };
     let apk = android::apk(&options)?;
     let mut made = Vec::new();
     for (suffix, extension) in [("", "apk"), ("-quest", "apk"), ("", "aab")] {

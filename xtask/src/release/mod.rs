@@ -13,7 +13,8 @@ use std::time::Instant;
 use anyhow::{Context as _, bail};
 
 use crate::apt::{self, Need};
-use crate::folders::{copy, copy_folder, remove, root, write};
+use crate::console::run;
+use crate::folders::{copy, copy_folder, make, remove, root, write};
 use crate::rust::{self, Rust};
 use crate::{notices, setup, site, web};
 
@@ -32,7 +33,7 @@ pub const SUMMARY: &str = "RELEASE.md";
 pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
     let start = Instant::now();
     let out = absolute(out).context("the current folder is gone: change to another")?;
-    fs::create_dir_all(&out).with_context(|| format!("{} cannot be made", out.display()))?;
+    make(&out)?;
     let items: Vec<Item> = if only.is_empty() { Item::ALL.to_vec() } else { in_order(only) };
     let commit = commit(&out)?;
     check_origin(&out, &commit)?;
@@ -95,12 +96,8 @@ fn in_order(items: &[Item]) -> Vec<Item> {
 /// Returns the commit that is built, and says if there are changes beside it, apart from the folder of the release.
 fn commit(out: &Path) -> anyhow::Result<String> {
     let git = |arguments: &[&str]| {
-        let output = Command::new("git").current_dir(root()).args(arguments).output();
-        let output = output.context("git cannot be started: apt-get install git")?;
-        if !output.status.success() {
-            bail!("git {} failed: a release is built from a clone", arguments[0]);
-        }
-        Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+        let text = run(Command::new("git").current_dir(root()).args(arguments));
+        Ok::<_, anyhow::Error>(text.context("a release is built from a clone")?.trim().to_owned())
     };
     let commit = git(&["rev-parse", "HEAD"])?;
     let made = out.strip_prefix(root()).map(|folder| format!(":(exclude){}", folder.display()));
@@ -136,13 +133,7 @@ fn files(out: &Path) -> anyhow::Result<Vec<PathBuf>> {
 fn write_sums(out: &Path) -> anyhow::Result<()> {
     let names = files(out)?.into_iter().filter_map(|path| path.file_name().map(ToOwned::to_owned));
     let sums = out.join(SUMS);
-    let mut command = Command::new("sha256sum");
-    let output = command.args(names).current_dir(out).output();
-    let output = output.context("sha256sum cannot be started: apt-get install coreutils")?;
-    if !output.status.success() {
-        bail!("sha256sum failed: {}", String::from_utf8_lossy(&output.stderr).trim());
-    }
-    write(&sums, output.stdout)
+    write(&sums, run(Command::new("sha256sum").args(names).current_dir(out))?)
 }
 
 #[cfg(test)]

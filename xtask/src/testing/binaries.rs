@@ -113,10 +113,8 @@ pub mod tests {
         assert_eq!(label(id, "bin", true, file).as_deref(), Some("yoro-cli::bin/program"));
         assert_eq!(label("path+file:///w/xtask#0.1.0", "lib", true, file).as_deref(), Some("xtask"));
         assert_eq!(label(id, "bin", false, file), None);
-        assert_eq!(label(id, "lib", true, "null"), None);
         assert_eq!(parse("   Compiling yoro"), None);
         let binary = binary("yoro-cli", "test");
-        assert!(binary.integration);
-        assert_eq!(binary.command().get_current_dir(), Some(Path::new("/w/app")));
+        assert!(binary.integration && binary.command().get_current_dir() == Some(Path::new("/w/app")));
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::Command;
 use std::thread::{Scope, ScopedJoinHandle};
+use std::time::Instant;
 
 use anyhow::{Context as _, anyhow, bail};
 
@@ -27,109 +28,92 @@ struct Item {
     build: Option<fn() -> anyhow::Result<PathBuf>>,
 }
 
+/// A row of the table. The users are a package and a part of their names each.
+const fn item(
+    what: &'static str,
+    variable: &'static str,
+    users: &'static [(&'static str, &'static str)],
+    fetch: fn() -> anyhow::Result<PathBuf>,
+    build: Option<fn() -> anyhow::Result<PathBuf>>,
+) -> Item {
+    Item { what, variable, users, fetch, build }
+}
+
 static ITEMS: [Item; 13] = [
-    Item {
-        what: "the page",
-        variable: "WEB",
-        users: &[("yoro-cli", "web::")],
-        fetch: page_can_be_built,
-        build: Some(|| web::build().and_then(|_| Ok(std::env::current_exe()?))),
-    },
-    Item {
-        what: "the example of yoro-wgpu for browsers",
-        variable: "WGPU_WEB",
-        users: &[("yoro-wgpu", "the_example_in_a_browser")],
-        fetch: page_can_be_built,
-        build: Some(|| web::build_example().and_then(|_| Ok(std::env::current_exe()?))),
-    },
-    Item {
-        what: "the WebXR emulator",
-        variable: "WEBXR",
-        users: &[("yoro-cli", "web::"), ("yoro-three-tests", "headsets")],
-        fetch: web::emulator,
-        build: None,
-    },
-    Item {
-        what: "three.js",
-        variable: "THREE",
-        users: &[("yoro-three-tests", "")],
-        fetch: web::three_modules,
-        build: None,
-    },
-    Item {
-        what: "Chromium",
-        variable: "CHROMIUM",
-        // The test names of this program do not show which of them open a page.
-        users: &[("yoro-cli", ""), ("yoro-three-tests", "")],
-        fetch: || setup::browser().context("it cannot be installed"),
-        build: None,
-    },
-    Item {
-        what: "Monado",
-        variable: "MONADO",
-        users: &[("yoro-cli", "monado")],
-        fetch: monado::make,
-        build: None,
-    },
-    Item {
-        what: "Mesa 25",
-        variable: "MULTIVIEW",
-        users: &[("yoro-tests", "multiview::")],
-        // Monado's drivers, and its launcher for this machine's programs.
-        fetch: || Ok(monado::make()?.join("run")),
-        build: None,
-    },
-    Item {
-        what: "hello_xr",
-        variable: "HELLO_XR",
-        users: &[("yoro-openxr-layer", "hello_xr"), ("yoro-cli", "through_the_layer")],
-        fetch: hello_xr::make,
-        build: None,
-    },
-    Item {
-        what: "shader compilers for mobile GPUs",
-        variable: "SHADER_COMPILERS",
-        users: &[("yoro-tests", "shader_cost::")],
-        fetch: || Ok(Compilers::make()?.folder().to_owned()),
-        build: None,
-    },
-    Item {
-        what: "the C library's package",
-        variable: "C_PACKAGE",
-        users: &[("yoro-c", "the_package")],
-        fetch: package::fetch_users_tools,
-        build: Some(|| package::package(&[package::Target::Linux])?.pop().context("no package was made")),
-    },
-    Item {
-        what: "the APK (cargo xtask doctor)",
-        variable: "APK",
-        users: &[("yoro-android-host", "")],
-        fetch: || android::ready_for_tests().map(|()| PathBuf::new()),
-        build: Some(|| {
-            android::apk(&android::Options {
-                release: true,
-                yes: true,
-                openxr_loaders: Vec::new(),
-                bundle: false,
-                quest: true,
-            })
-        }),
-    },
-    Item {
-        what: "the Android layer",
-        variable: "ANDROID_LAYER",
-        users: &[("yoro-android-host", "layer")],
-        fetch: || android::ready_for_tests().map(|()| PathBuf::new()),
-        build: Some(package::layer_for_tests),
-    },
-    Item {
-        what: "the simulated Android host for arm64",
-        variable: "ARM64_HOST",
-        users: &[("yoro-android-host", "arm64")],
-        fetch: arm64::fetch,
-        build: Some(arm64::build_host),
-    },
+    item("the page", "WEB", &[("yoro-cli", "web::")], page_can_be_built, Some(|| web::build().and(this_program()))),
+    item(
+        "the example of yoro-wgpu for browsers",
+        "WGPU_WEB",
+        &[("yoro-wgpu", "the_example_in_a_browser")],
+        page_can_be_built,
+        Some(|| web::build_example().and(this_program())),
+    ),
+    item(
+        "the WebXR emulator",
+        "WEBXR",
+        &[("yoro-cli", "web::"), ("yoro-three-tests", "headsets")],
+        web::emulator,
+        None,
+    ),
+    item("three.js", "THREE", &[("yoro-three-tests", "")], web::three_modules, None),
+    // The names of the program's tests do not show which of them open a page.
+    item(
+        "Chromium",
+        "CHROMIUM",
+        &[("yoro-cli", ""), ("yoro-three-tests", "")],
+        || setup::browser().context("it cannot be installed"),
+        None,
+    ),
+    item("Monado", "MONADO", &[("yoro-cli", "monado")], monado::make, None),
+    // Monado's drivers, and its launcher for this machine's programs.
+    item("Mesa 25", "MULTIVIEW", &[("yoro-tests", "multiview::")], || Ok(monado::make()?.join("run")), None),
+    item(
+        "hello_xr",
+        "HELLO_XR",
+        &[("yoro-openxr-layer", "hello_xr"), ("yoro-cli", "through_the_layer")],
+        hello_xr::make,
+        None,
+    ),
+    item(
+        "shader compilers for mobile GPUs",
+        "SHADER_COMPILERS",
+        &[("yoro-tests", "shader_cost::")],
+        || Ok(Compilers::make()?.folder().to_owned()),
+        None,
+    ),
+    item(
+        "the C library's package",
+        "C_PACKAGE",
+        &[("yoro-c", "the_package")],
+        package::fetch_users_tools,
+        Some(|| package::package(&[package::Target::Linux])?.pop().context("no package was made")),
+    ),
+    item(
+        "the APK (cargo xtask doctor)",
+        "APK",
+        &[("yoro-android-host", "")],
+        android::ready_for_tests,
+        Some(android::apk_for_tests),
+    ),
+    item(
+        "the Android layer",
+        "ANDROID_LAYER",
+        &[("yoro-android-host", "layer")],
+        android::ready_for_tests,
+        Some(package::layer_for_tests),
+    ),
+    item(
+        "the simulated Android host for arm64",
+        "ARM64_HOST",
+        &[("yoro-android-host", "arm64")],
+        arm64::fetch,
+        Some(arm64::build_host),
+    ),
 ];
+
+fn this_program() -> anyhow::Result<PathBuf> {
+    Ok(std::env::current_exe()?)
+}
 
 fn page_can_be_built() -> anyhow::Result<PathBuf> {
     if web::can_be_built() { Ok(PathBuf::new()) } else { bail!("no Rust can compile for browsers") }
@@ -180,6 +164,10 @@ pub struct Equipment {
     pub absent: Vec<String>,
 }
 
+/// What was fetched and built: name, variable and path of each item that is available or not, and how long it took.
+#[derive(Default)]
+pub struct Prepared(Vec<(&'static Item, Option<PathBuf>, f64)>);
+
 impl<'scope> Preparation<'scope> {
     /// Starts the preparation for the selected tests, or for all tests.
     ///
@@ -228,22 +216,22 @@ impl<'scope> Preparation<'scope> {
     ///
     /// # Errors
     /// Fails if something cannot be built.
-    pub fn finish(self, equipment: &mut Equipment, summary: &mut Summary) -> anyhow::Result<()> {
+    pub fn finish(self) -> anyhow::Result<Prepared> {
+        let mut prepared = Prepared::default();
         for (item, fetching) in self.items {
-            let fetched = summary.measure(&format!("waiting for {}", item.what), || join(fetching));
+            let fetched = join(fetching);
+            let start = Instant::now();
             let path = match (fetched, item.build) {
-                (Ok(_), Some(build)) => Some(summary.measure(&format!("building {}", item.what), build)?),
+                (Ok(_), Some(build)) => Some(build()?),
                 (Ok(path), None) => Some(path),
                 (Err(error), _) => {
-                    let sentence = format!("{} cannot be had here: its tests were left out", item.what);
-                    eprintln!("warning: {sentence}: {error:#}");
-                    equipment.absent.push(sentence);
+                    eprintln!("warning: {} cannot be had here: its tests are left out: {error:#}", item.what);
                     None
                 }
             };
-            equipment.items.push((item.variable, path));
+            prepared.0.push((item, path, start.elapsed().as_secs_f64()));
         }
-        Ok(())
+        Ok(prepared)
     }
 }
 
@@ -252,6 +240,17 @@ fn join<T>(handle: ScopedJoinHandle<'_, anyhow::Result<T>>) -> anyhow::Result<T>
 }
 
 impl Equipment {
+    /// Adds what was prepared.
+    pub fn add(&mut self, prepared: Prepared, summary: &mut Summary) {
+        for (item, path, seconds) in prepared.0 {
+            summary.add_phase(&format!("  of it {}", item.what), seconds);
+            if path.is_none() {
+                self.absent.push(format!("{} cannot be had here: its tests were left out", item.what));
+            }
+            self.items.push((item.variable, path));
+        }
+    }
+
     /// Sets the variables that tell a test program what is available.
     pub fn set_variables(&self, command: &mut Command) {
         if !self.libraries.osmesa {

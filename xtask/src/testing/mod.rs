@@ -1,9 +1,9 @@
 //! Runs all tests of the workspace: cargo compiles them, and several processes run them at a time.
 //!
 //! Differences from `cargo test`: several processes run at a time rather than several threads, since Mesa's rasterizer
-//! occasionally crashes when two threads of a process draw; after a crash, which fails one test, the others still run;
-//! failed tests run once more, alone; and what tests need is fetched and built. cargo-nextest provides most of this,
-//! but depends on 400 packages, which a fresh clone would have to compile first.
+//! occasionally crashes when two threads of a process draw; after a crash, the other tests still run; failed tests run
+//! once more, alone; and what tests need is fetched and built meanwhile. cargo-nextest provides most of this, but depends
+//! on 400 packages, which a fresh clone would have to compile first.
 
 mod binaries;
 mod equipment;
@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use std::process::Stdio;
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
+use std::time::Instant;
 
 use anyhow::bail;
 
@@ -25,8 +26,8 @@ use crate::folders::target_folder;
 use crate::{apt, setup};
 
 use binaries::Program;
-use equipment::{Equipment, Preparation};
-use process::{Finished, Outcome, shown};
+use equipment::{Equipment, Preparation, Prepared};
+use process::Finished;
 use summary::Summary;
 
 /// Parts of `program name` of the tests that must not run beside others.
@@ -38,14 +39,10 @@ const ALONE: [&str; 2] = [
     // In qemu, beside other tests, the first frames take longer than a minute.
     "yoro-android-host::apk the_arm64_library",
 ];
-/// Number of integration tests per process. Each takes seconds.
-const INTEGRATION: usize = 4;
-/// Number of unit tests per process. Each takes milliseconds.
+/// Number of unit tests per process. Each takes milliseconds, while an integration test takes seconds and has its own.
 const UNIT: usize = 60;
 /// Maximum number of failures that are retried. More of them are no coincidence.
-const RETRIED: usize = 8;
-/// The label of the tests in documentation, which have no program.
-const DOCUMENTATION: &str = "documentation";
+const MAX_RETRIED: usize = 8;
 
 /// Which tests to run, and how.
 #[derive(Clone, Debug, Default)]
@@ -72,11 +69,11 @@ impl Options {
 
 /// The work of one process.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Job {
-    /// These tests of a program, which is given by its index.
-    Tests(usize, Vec<String>),
-    /// The doc tests of all libraries.
-    Documentation,
+struct Job {
+    /// The program's index. `None` for the tests in the documentation of all libraries.
+    program: Option<usize>,
+    /// The names of its tests.
+    names: Vec<String>,
 }
 
 /// All jobs, in groups that run one after another.
@@ -120,10 +117,13 @@ pub fn test(options: &Options) -> anyhow::Result<()> {
         let plan = plan(&programs, options);
         let workers =
             options.jobs.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
-        run.all(plan.first, workers, "running tests", &mut summary);
-        preparation.finish(&mut run.equipment, &mut summary)?;
-        run.all(plan.equipped, workers, "running tests with equipment", &mut summary);
-        run.all(plan.alone, 1, "running tests alone", &mut summary);
+        // The first worker builds, since cargo keeps but one processor busy while it links and optimizes whole programs.
+        let mut prepared = Ok(Prepared::default());
+        let prepare = || prepared = preparation.finish();
+        run.all(plan.first, workers, "running tests, building equipment", &mut summary, prepare);
+        run.equipment.add(prepared?, &mut summary);
+        run.all(plan.equipped, workers, "running tests with equipment", &mut summary, || ());
+        run.all(plan.alone, 1, "running tests alone", &mut summary, || ());
         run.retry(&mut summary);
         Ok::<Equipment, anyhow::Error>(run.equipment)
     })?;
@@ -143,19 +143,13 @@ pub fn test(options: &Options) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn is_alone(program: &str, name: &str) -> bool {
-    ALONE.iter().any(|part| format!("{program} {name}").contains(part))
-}
-
 /// Returns patterns in the tables that match no test, for example because it was renamed.
 fn stale(programs: &[Program]) -> Vec<String> {
-    let fits = |part: &&&str| {
-        programs.iter().any(|(binary, names)| {
-            names.iter().any(|name| format!("{} {name}", binary.label).contains(**part))
-        })
+    let is_alone = |part: &str, (binary, names): &Program| {
+        names.iter().any(|name| format!("{} {name}", binary.label).contains(part))
     };
-    let alone = ALONE.iter().filter(|part| !fits(part)).map(|part| (*part).to_owned());
-    alone.chain(equipment::stale(programs)).collect()
+    let alone = ALONE.iter().filter(|part| !programs.iter().any(|program| is_alone(part, program)));
+    alone.map(|part| (*part).to_owned()).chain(equipment::stale(programs)).collect()
 }
 
 /// Divides the tests into jobs. Integration tests come first, since they take longer.
@@ -164,23 +158,24 @@ fn plan(programs: &[Program], options: &Options) -> Plan {
     let chosen = programs.iter().any(|(_, names)| !names.is_empty());
     // Searching doc tests takes seconds per library. It is omitted if the filter has matched other tests.
     if options.packages.is_empty() && (options.filters.is_empty() || !chosen) {
-        plan.first.push(Job::Documentation);
+        plan.first.push(Job { program: None, names: Vec::new() });
     }
     let mut order: Vec<usize> = (0..programs.len()).collect();
     order.sort_by_key(|&program| !programs[program].0.integration);
     for program in order {
         let (binary, names) = &programs[program];
-        let (alone, beside): (Vec<_>, Vec<_>) =
-            names.iter().cloned().partition(|name| is_alone(&binary.label, name));
-        plan.alone.extend(alone.into_iter().map(|name| Job::Tests(program, vec![name])));
+        let job = |names: &[String]| Job { program: Some(program), names: names.to_vec() };
+        let is_alone = |name: &String| {
+            let full = format!("{} {name}", binary.label);
+            ALONE.iter().any(|part| full.contains(part))
+        };
+        let (alone, beside): (Vec<_>, Vec<_>) = names.iter().cloned().partition(is_alone);
+        plan.alone.extend(alone.chunks(1).map(job));
         let (equipped, first): (Vec<_>, Vec<_>) =
             beside.into_iter().partition(|name| equipment::is_needed(&binary.package, name));
-        let size = if binary.integration { INTEGRATION } else { UNIT };
-        let jobs = |names: Vec<String>| {
-            names.chunks(size).map(|names| Job::Tests(program, names.to_vec())).collect::<Vec<_>>()
-        };
-        plan.first.extend(jobs(first));
-        plan.equipped.extend(jobs(equipped));
+        let size = if binary.integration { 1 } else { UNIT };
+        plan.first.extend(first.chunks(size).map(job));
+        plan.equipped.extend(equipped.chunks(size).map(job));
     }
     plan
 }
@@ -195,26 +190,24 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn program(&self, job: &Job) -> &'a str {
-        match job {
-            Job::Tests(program, _) => &self.programs[*program].0.label,
-            Job::Documentation => DOCUMENTATION,
-        }
+    fn label(&self, job: &Job) -> &'a str {
+        job.program.map_or("documentation", |program| &self.programs[program].0.label)
     }
 
     fn process(&self, job: &Job) -> Finished {
-        let (mut command, names) = match job {
-            Job::Tests(program, names) => {
-                let mut command = self.programs[*program].0.command();
-                // Not captured, so that output before a crash is not lost.
-                command.args(["--exact", "--test-threads=1", "--nocapture"]).args(names);
-                (command, Some(names.as_slice()))
+        let mut command = match job.program {
+            Some(program) => {
+                let mut command = self.programs[program].0.command();
+                command.args(["--exact", "--test-threads=1"]).args(&job.names);
+                // Not captured if it is one, so that output before a crash is not lost; else to be found by its name.
+                command.arg(if job.names.len() == 1 { "--nocapture" } else { "--show-output" });
+                command
             }
-            Job::Documentation => {
+            None => {
                 let mut command = cargo();
                 command.args(["test", "--workspace", "--doc", "--no-fail-fast", "--"]);
                 command.args(&self.options.filters).stdin(Stdio::null());
-                (command, None)
+                command
             }
         };
         // The golden images were made with Mesa's rasterizer. A GPU would round differently.
@@ -225,77 +218,88 @@ impl<'a> Run<'a> {
             command.env("YORO_BLESS", "1");
         }
         self.equipment.set_variables(&mut command);
-        process::run(command, names, &self.folder)
+        process::run(command, &job.names, &self.folder)
     }
 
-    /// Runs jobs with `workers` processes at a time, and prints the results.
-    fn all(&self, jobs: Vec<Job>, workers: usize, what: &str, summary: &mut Summary) {
+    /// Runs jobs with `workers` processes at a time, one of which does something else `before`, and prints the results.
+    fn all(
+        &self,
+        jobs: Vec<Job>,
+        workers: usize,
+        what: &str,
+        summary: &mut Summary,
+        before: impl FnOnce() + Send,
+    ) {
         let total: usize = self.programs.iter().map(|(_, names)| names.len()).sum();
         let queue = Mutex::new(VecDeque::from(jobs));
-        let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+        let queue = || queue.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut before = Some(before);
         let (sender, receiver) = mpsc::channel();
-        let start = std::time::Instant::now();
+        let start = Instant::now();
         thread::scope(|scope| {
             for _ in 0..workers {
-                let (sender, queue) = (sender.clone(), &queue);
+                let (sender, queue, before) = (sender.clone(), &queue, before.take());
                 scope.spawn(move || {
-                    while let Some(job) = next() {
+                    if let Some(before) = before {
+                        before();
+                    }
+                    loop {
+                        let Some(job) = queue().pop_front() else { break };
                         let finished = self.process(&job);
-                        // After a crash, the remaining tests still run.
-                        if let (Job::Tests(program, _), false) = (&job, finished.rest.is_empty()) {
-                            let rest = Job::Tests(*program, finished.rest.clone());
-                            queue.lock().unwrap_or_else(PoisonError::into_inner).push_front(rest);
+                        if job.names.len() > 1 && finished.failed == job.names {
+                            // It has crashed: each test in a process of its own shows which one.
+                            let names = job.names.chunks(1);
+                            queue().extend(names.map(|name| Job { names: name.to_vec(), ..job.clone() }));
+                        } else {
+                            sender.send((job, finished)).ok();
                         }
-                        sender.send((job, finished)).ok();
                     }
                 });
             }
             drop(sender);
             for (job, finished) in receiver {
-                let program = self.program(&job);
-                let before = summary.count();
-                summary.add(program, &finished);
-                // The number of documentation tests is not known before they have run.
-                let total = total + summary.count_of(DOCUMENTATION);
-                print_tests(program, &finished, |i| format!("[{:4}/{total}] ", before + i + 1));
+                let label = self.label(&job);
+                let name = match &job.names[..] {
+                    [name] => format!("{label} {name}"),
+                    names if names.is_empty() => label.to_owned(),
+                    names => format!("{label}, {} tests", names.len()),
+                };
+                summary.add(label, &name, &finished);
+                print(&format!("[{:4}/{total}] ", summary.count()), &name, &finished);
             }
         });
-        summary.phase(what, start.elapsed());
+        summary.add_phase(what, start.elapsed().as_secs_f64());
     }
 
     /// Runs failed tests once more, alone.
     fn retry(&self, summary: &mut Summary) {
-        if summary.failed.is_empty() || summary.failed.len() > RETRIED {
+        if summary.failed.is_empty() || summary.failed.len() > MAX_RETRIED {
             return;
         }
         println!("\nwhat failed, a second time and alone:");
         for (program, (binary, names)) in self.programs.iter().enumerate() {
             for name in names {
-                if summary.failed.contains(&format!("{} {name}", binary.label)) {
-                    let finished = self.process(&Job::Tests(program, vec![name.clone()]));
-                    summary.add_retry(&binary.label, &finished);
-                    print_tests(&binary.label, &finished, |_| String::new());
+                let full = format!("{} {name}", binary.label);
+                if summary.failed.contains(&full) {
+                    let finished = self.process(&Job { program: Some(program), names: vec![name.clone()] });
+                    print("", &full, &finished);
+                    if finished.failed.is_empty() {
+                        summary.add_flaky(&full);
+                    }
                 }
             }
         }
     }
 }
 
-/// Prints a line per test, and the whole output of a process with a failed test.
-fn print_tests(program: &str, finished: &Finished, count: impl Fn(usize) -> String) {
-    for (i, test) in finished.tests.iter().enumerate() {
-        let word = match test.outcome {
-            Outcome::Passed => "ok",
-            Outcome::Failed => "FAILED",
-            Outcome::Ignored => "ignored",
-        };
-        println!("{}{word:7} {:6.2} s  {program} {}", count(i), test.seconds, test.name);
-    }
-    if finished.tests.iter().any(|test| test.outcome == Outcome::Failed) {
-        print!("{}", shown(&finished.lines));
-    }
-    if let Some(trouble) = &finished.trouble {
-        println!("    {trouble}");
+/// Prints a line for a process, and its whole output if a test failed.
+fn print(count: &str, name: &str, finished: &Finished) {
+    let word = if finished.failed.is_empty() { "ok" } else { "FAILED" };
+    println!("{count}{word:7} {:6.2} s  {name}", finished.seconds);
+    if !finished.failed.is_empty() {
+        for line in finished.output.lines() {
+            println!("    {line}");
+        }
     }
 }
 
@@ -312,19 +316,15 @@ mod tests {
     fn long_tests_go_first_and_equipped_ones_last() {
         let programs = [
             (binary("yoro", "lib"), names(&["a", "b"])),
-            (binary("yoro-render", "test"), names(&["1", "2", "3", "4", "5"])),
+            (binary("yoro-render", "test"), names(&["1", "2"])),
             (binary("yoro-cli", "test"), names(&["memory::largest", "xr::memory"])),
         ];
         let plan = plan(&programs, &Options::default());
-        let first = [
-            Job::Documentation,
-            Job::Tests(1, names(&["1", "2", "3", "4"])),
-            Job::Tests(1, names(&["5"])),
-            Job::Tests(0, names(&["a", "b"])),
-        ];
+        let job = |program, tests: &[&str]| Job { program, names: names(tests) };
+        let first = [job(None, &[]), job(Some(1), &["1"]), job(Some(1), &["2"]), job(Some(0), &["a", "b"])];
         assert_eq!(plan.first, first);
-        assert_eq!(plan.equipped, [Job::Tests(2, names(&["xr::memory"]))]);
-        assert_eq!(plan.alone, [Job::Tests(2, names(&["memory::largest"]))]);
+        assert_eq!(plan.equipped, [job(Some(2), &["xr::memory"])]);
+        assert_eq!(plan.alone, [job(Some(2), &["memory::largest"])]);
         assert_eq!(stale(&programs)[0], ALONE[1]);
     }
 
@@ -332,7 +332,7 @@ mod tests {
     fn documentation_is_searched_only_for_names_that_are_nowhere_else() {
         let planned = |filter: &str, found: &[&str]| {
             let options = Options { filters: names(&[filter]), ..Options::default() };
-            plan(&[(binary("yoro", "lib"), names(found))], &options).first.contains(&Job::Documentation)
+            plan(&[(binary("yoro", "lib"), names(found))], &options).first[0].program.is_none()
         };
         assert_eq!((planned("a", &["a"]), planned("src/lib.rs", &[])), (false, true));
     }

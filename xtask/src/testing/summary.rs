@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use super::process::{Finished, Outcome};
+use super::process::Finished;
 
-/// Number of slowest tests that are listed.
+/// Number of slowest processes that are listed.
 const SLOWEST: usize = 10;
 
 /// The totals of a test run.
@@ -15,15 +15,14 @@ pub struct Summary {
     start: Instant,
     /// Names and durations in seconds.
     phases: Vec<(String, f64)>,
-    /// Per program, the number of tests and the seconds of their processes.
-    programs: BTreeMap<String, (usize, f64)>,
-    /// Durations in seconds and names of passed tests.
-    passed: Vec<(f64, String)>,
+    /// Seconds and names of processes.
+    processes: Vec<(f64, String)>,
+    passed: usize,
+    ignored: usize,
     /// Failed tests, as `program test`.
     pub failed: Vec<String>,
     /// Tests that failed beside others, but passed alone.
     flaky: Vec<String>,
-    ignored: usize,
     /// Messages about missing equipment, and the number of tests that printed each.
     left_out: BTreeMap<String, usize>,
 }
@@ -34,11 +33,11 @@ impl Summary {
         Self {
             start: Instant::now(),
             phases: Vec::new(),
-            programs: BTreeMap::new(),
-            passed: Vec::new(),
+            processes: Vec::new(),
+            passed: 0,
+            ignored: 0,
             failed: Vec::new(),
             flaky: Vec::new(),
-            ignored: 0,
             left_out: BTreeMap::new(),
         }
     }
@@ -47,54 +46,39 @@ impl Summary {
     pub fn measure<T>(&mut self, what: &str, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
-        self.phase(what, start.elapsed());
+        self.add_phase(what, start.elapsed().as_secs_f64());
         result
     }
 
-    /// Records a duration.
-    pub fn phase(&mut self, what: &str, taken: Duration) {
-        self.phases.push((what.to_owned(), taken.as_secs_f64()));
+    /// Records a duration in seconds.
+    pub fn add_phase(&mut self, what: &str, seconds: f64) {
+        self.phases.push((what.to_owned(), seconds));
     }
 
-    /// Adds a process of a test program.
-    pub fn add(&mut self, program: &str, finished: &Finished) {
-        let (tests, seconds) = self.programs.entry(program.to_owned()).or_default();
-        *tests += finished.tests.len();
-        *seconds += finished.seconds;
-        for test in &finished.tests {
-            let full = format!("{program} {}", test.name);
-            match test.outcome {
-                Outcome::Passed => self.passed.push((test.seconds, full)),
-                Outcome::Failed => self.failed.push(full),
-                Outcome::Ignored => self.ignored += 1,
-            }
-        }
+    /// Adds a process of a program. `name` names what it has run.
+    pub fn add(&mut self, program: &str, name: &str, finished: &Finished) {
+        self.processes.push((finished.seconds, name.to_owned()));
+        self.passed += finished.counts[0];
+        self.ignored += finished.counts[2];
+        self.failed.extend(finished.failed.iter().map(|test| format!("{program} {test}")));
         // Many tests print the same message.
-        for text in finished.lines.iter().map(|line| line.text.trim()) {
+        for text in finished.output.lines().map(str::trim) {
             if let Some(at) = text.find("LEFT OUT: ").or_else(|| text.find("SKIPPED: ")) {
                 *self.left_out.entry(text[at..].to_owned()).or_default() += 1;
             }
         }
     }
 
-    /// Adds the second run of failed tests. Those that now pass are counted as flaky instead of failed.
-    pub fn add_retry(&mut self, program: &str, finished: &Finished) {
-        for test in finished.tests.iter().filter(|test| test.outcome == Outcome::Passed) {
-            let full = format!("{program} {}", test.name);
-            self.failed.retain(|failed| *failed != full);
-            self.passed.push((test.seconds, full.clone()));
-            self.flaky.push(full);
-        }
+    /// Counts a failed test that passes alone.
+    pub fn add_flaky(&mut self, test: &str) {
+        self.failed.retain(|failed| failed != test);
+        self.passed += 1;
+        self.flaky.push(test.to_owned());
     }
 
     /// Returns the number of finished tests.
     pub fn count(&self) -> usize {
-        self.passed.len() + self.failed.len() + self.ignored
-    }
-
-    /// Returns the number of finished tests of a program.
-    pub fn count_of(&self, program: &str) -> usize {
-        self.programs.get(program).map_or(0, |(tests, _)| *tests)
+        self.passed + self.failed.len() + self.ignored
     }
 }
 
@@ -104,16 +88,10 @@ impl fmt::Display for Summary {
         for (what, seconds) in self.phases.iter().filter(|(_, seconds)| *seconds >= 0.05) {
             writeln!(f, "  {what:48} {seconds:8.1}")?;
         }
-        writeln!(f, "\nprogram                                 tests   in processes s")?;
-        let mut programs: Vec<_> = self.programs.iter().collect();
-        programs.sort_by(|a, b| b.1.1.total_cmp(&a.1.1));
-        for (name, (tests, seconds)) in programs {
-            writeln!(f, "  {name:38}{tests:5}{seconds:17.1}")?;
-        }
-        writeln!(f, "\nslowest tests")?;
-        let mut tests: Vec<_> = self.passed.iter().collect();
-        tests.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (seconds, name) in tests.into_iter().take(SLOWEST) {
+        writeln!(f, "\nslowest")?;
+        let mut processes: Vec<_> = self.processes.iter().collect();
+        processes.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (seconds, name) in processes.into_iter().take(SLOWEST) {
             writeln!(f, "{seconds:8.1} s  {name}")?;
         }
         for (text, count) in &self.left_out {
@@ -130,7 +108,7 @@ impl fmt::Display for Summary {
             f,
             "\ntest result: {}. {} passed; {} failed; {} ignored; finished in {:.2}s",
             if self.failed.is_empty() { "ok" } else { "FAILED" },
-            self.passed.len(),
+            self.passed,
             self.failed.len(),
             self.ignored,
             self.start.elapsed().as_secs_f64()
@@ -140,35 +118,25 @@ impl fmt::Display for Summary {
 
 #[cfg(test)]
 mod tests {
-    use super::super::process::Test;
     use super::*;
-
-    fn finished(names: &[&str], outcome: Outcome, seconds: f64) -> Finished {
-        let test = |&name: &&str| Test { name: name.to_owned(), outcome, seconds };
-        Finished { tests: names.iter().map(test).collect(), seconds, ..Finished::default() }
-    }
 
     #[test]
     fn tests_are_summed_up_as_libtest_does() {
         let mut summary = Summary::begin();
-        assert_eq!(summary.measure("compiling", || 7), 7);
-        summary.add("yoro", &finished(&["a", "b"], Outcome::Passed, 1.0));
-        summary.add("yoro", &finished(&["c"], Outcome::Ignored, 2.0));
-        summary.add("yoro-cli::program", &finished(&["bad", "worse"], Outcome::Failed, 9.0));
+        let failed = vec!["bad".to_owned(), "worse".to_owned()];
+        let output = "LEFT OUT: no GPU\n".to_owned();
+        summary.add("yoro", "yoro, 5 tests", &Finished { counts: [2, 2, 1], failed, output, seconds: 3.0 });
         assert_eq!(summary.count(), 5);
-        summary.add_retry("yoro-cli::program", &finished(&["bad"], Outcome::Passed, 100.0));
-        assert_eq!(summary.failed, ["yoro-cli::program worse"]);
+        summary.add_flaky("yoro bad");
+        assert_eq!(summary.failed, ["yoro worse"]);
         let text = summary.to_string();
-        assert!(
-            text.contains("\ntest result: FAILED. 3 passed; 1 failed; 1 ignored; finished in 0."),
-            "{text}"
-        );
-        assert!(text.contains("\nFLAKY: yoro-cli::program bad failed"), "{text}");
-        assert!(
-            text.contains("slowest tests\n   100.0 s  yoro-cli::program bad\n     1.0 s  yoro a\n"),
-            "{text}"
-        );
-        let yoro = text.lines().find(|line| line.starts_with("  yoro ")).unwrap();
-        assert_eq!(yoro.split_whitespace().collect::<Vec<_>>(), ["yoro", "3", "3.0"]);
+        for part in [
+            "\ntest result: FAILED. 3 passed; 1 failed; 1 ignored; finished in 0.",
+            "\nFLAKY: yoro bad failed",
+            "     3.0 s  yoro, 5 tests\n",
+            "     1 x  LEFT OUT: no GPU\n",
+        ] {
+            assert!(text.contains(part), "{text}");
+        }
     }
 }

@@ -1,26 +1,20 @@
 //! Works with Android's archives and libraries. `check APK STORE [any-key]` checks whether Android will install and start
 //! an APK or a bundle (.aab), and whether a store (`quest`, `play`; `-` for none) takes it, with `any-key` but for the key
 //! that signed it; `bundle APK AAB` converts an APK to a bundle, `loader LIBRARY` prints the architecture of an OpenXR
-//! loader, and `pack AAR FOLDER` packs the files of a folder.
+//! loader, and `pack ARCHIVE FOLDER` packs the files of a folder.
 //!
 //! This is a separate program so that only people who build for Android have to compile its dependencies.
 
-mod archive;
 mod bundle;
 mod check;
 mod library;
-mod loader;
 mod manifest;
-mod public;
-mod report;
-mod signature;
-mod store;
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::bail;
-use store::Store;
+use check::Store;
 use xtask::console;
 
 fn main() -> ExitCode {
@@ -34,20 +28,21 @@ fn main() -> ExitCode {
 
 /// Returns the text to print, and false if a check has failed.
 fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
-    Ok(match arguments {
-        ["check", apk, store, key @ ..] if key.is_empty() || *key == ["any-key"] => {
-            let report = check::check(Path::new(apk), Store::named(store)?, !key.is_empty())?;
-            (report.to_string(), report.passed())
+    let store = |name: &str| match name {
+        "-" => Ok(Store::None),
+        "quest" => Ok(Store::Quest),
+        "play" => Ok(Store::Play),
+        _ => bail!("no store is called {name}: quest or play"),
+    };
+    match arguments {
+        ["check", apk, name, key @ ..] if key.is_empty() || *key == ["any-key"] => {
+            let report = check::check(Path::new(apk), store(name)?, !key.is_empty())?;
+            return Ok((report.to_string(), report.passed()));
         }
-        ["bundle", apk, bundle] => {
-            bundle::make(Path::new(apk), Path::new(bundle))?;
-            (String::new(), true)
-        }
-        ["loader", library] => (loader::abi(Path::new(library))?.to_owned(), true),
-        ["pack", packed, folder] => {
-            archive::pack(Path::new(folder), Path::new(packed))?;
-            (String::new(), true)
-        }
-        _ => bail!("usage: check APK STORE [any-key], bundle APK AAB, loader LIBRARY, or pack AAR FOLDER"),
-    })
+        ["bundle", apk, bundle] => bundle::make(Path::new(apk), Path::new(bundle))?,
+        ["loader", library] => return Ok((library::loader_abi(Path::new(library))?.to_owned(), true)),
+        ["pack", packed, folder] => bundle::pack(Path::new(folder), Path::new(packed))?,
+        _ => bail!("usage: check APK STORE [any-key], bundle APK AAB, loader LIBRARY, or pack ARCHIVE FOLDER"),
+    }
+    Ok((String::new(), true))
 }
