@@ -7,7 +7,6 @@ mod compare;
 mod dataset;
 mod device;
 mod device_report;
-mod files;
 mod interrupt;
 mod layer;
 mod memory;

@@ -191,32 +191,14 @@ fn a_closed_pipe_is_no_error() {
     assert_eq!(output.status.code(), Some(0));
 }
 
-/// An option that would change nothing is a mistake, too.
 #[test]
-fn options_without_effect_are_refused() {
+fn one_process_at_a_time_appends_to_a_file() {
     let dir = tempfile::tempdir().unwrap();
-    for (line, naming) in [
-        (
-            "render prototype --frames 2 --video v.mp4 --pipeline paper",
-            ["--pipeline has no effect on a video", "leave it out"],
-        ),
-        ("render prototype --frames 2 --video v.mp4 --near-field 1", ["--near-field has no effect", "video"]),
-        ("render prototype --frames 2 --video v.mp4 --no-switch", ["--no-switch has no effect", "video"]),
-        (
-            "render prototype --method conventional --pipeline paper",
-            ["--pipeline has no effect", "conventional"],
-        ),
-        ("render prototype --split-disparity 2", ["--split-disparity has no effect", "yoro"]),
-        ("render prototype --kernel-height 5", ["--kernel-height has no effect", "pipeline gather"]),
-        ("run prototype --pipeline paper", ["--pipeline has no effect", "--pipelines"]),
-        (
-            "view --png v.png --set frame-rate=half --set near-field=2",
-            ["near-field and frame-rate=half do not go together", "leave one of them out"],
-        ),
-    ] {
-        run(dir.path(), line).refuses(&naming);
-    }
-    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0, "nothing was written");
+    let at = dir.path();
+    let held = yoro_files::append(&at.join("results.jsonl")).unwrap();
+    let bench = "bench scenes --quick --rounds 1 --size 32x32 --scene prototype --out results.jsonl";
+    run(at, bench).refuses(&["results.jsonl is being written by another yoro", "--out"]);
+    drop(held);
 }
 
 #[test]

@@ -27,22 +27,6 @@ fn a_report_of_every_method() {
 /// Two triangles around the origin.
 const SQUARE: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
 
-#[test]
-fn scenes_of_one_name_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    for file in ["a/scene.obj", "b/scene.obj", "prototype.obj"] {
-        fs::create_dir_all(dir.path().join(file).parent().unwrap()).unwrap();
-        fs::write(dir.path().join(file), SQUARE).unwrap();
-    }
-    for (scenes, naming) in [
-        ("a/scene.obj b/scene.obj", ["a/scene.obj", "b/scene.obj"]),
-        ("prototype ./prototype.obj", ["pictures of prototype and", "./prototype.obj"]),
-    ] {
-        run(dir.path(), &format!("run {scenes} --size 64 --viewpoints 1")).refuses(&naming);
-    }
-    assert!(!dir.path().join("out").exists());
-}
-
 /// On an empty view every method would be perfect.
 #[test]
 fn a_view_of_nothing_is_not_measured() {

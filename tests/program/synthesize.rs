@@ -185,38 +185,6 @@ fn folders() {
     run(dir.path(), &line).refuses(&["c.png has no depth image of that name in depth"]);
 }
 
-/// An output that would silently replace a file is refused before anything is written.
-#[test]
-fn every_output_has_its_place() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
-    for name in ["a.png", "a.jpg"] {
-        yoro_media::save_color(&at.join("color").join(name), &pair::color(0.5)).unwrap();
-    }
-    yoro_media::save_depth(&at.join("depth/a.exr"), &pair::metres(0.5)).unwrap();
-    let synthesize = |options: &str| run(at, &format!("synthesize --depth-encoding metres {options}"));
-    synthesize("--color color --depth depth --out out").refuses(&["color/a.jpg", "color/a.png", "out/a.png"]);
-    fs::remove_file(at.join("color/a.jpg")).unwrap();
-    let before = fs::read(at.join("color/a.png")).unwrap();
-    for (options, naming) in [
-        ("--color color --depth depth --out out --mask-out out", &["mask of color/a.png", "out/a.png"][..]),
-        ("--color color --depth depth --out color", &["color/a.png is read"]),
-        ("--color color --depth depth --out out --disparity-out depth", &["depth/a.exr is read"]),
-        ("--color color --depth depth --out out --disparity-out d --source-out ./d", &["d/a.exr"]),
-        ("--color color/a.png --depth depth/a.exr --out o.png --mask-out new/../o.png", &["o.png"]),
-        ("--color color/a.png --depth depth/a.exr --out ./color/a.png", &["color/a.png is read"]),
-        (
-            "--color color/a.png --depth depth/a.exr --out o.png --mask-out o.png --dominant center",
-            &["o.left.png"],
-        ),
-    ] {
-        fs::create_dir_all(at.join("new")).unwrap();
-        synthesize(options).refuses(naming);
-    }
-    assert_eq!(fs::read(at.join("color/a.png")).unwrap(), before);
-    assert!(!at.join("out").exists() && !at.join("o.png").exists());
-}
-
 #[test]
 fn depth_without_meaning_is_refused() {
     let dir = tempfile::tempdir().unwrap();

@@ -70,7 +70,7 @@ fn main() -> ExitCode {
     terminal::log_from(level);
     terminal::quiet_decoders();
     terminal::catch_interrupt();
-    match cli::run(arguments.command.subcommand()) {
+    match arguments.command.subcommand().run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {}", cli::message::of(&error));

@@ -10,7 +10,6 @@ use crate::cli::args::{self, GlArgs, Shard, parse_fov};
 use crate::cli::choices;
 use crate::cli::eyes;
 use crate::cli::machine;
-use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyeOptions};
@@ -101,15 +100,6 @@ pub struct BenchArgs {
 }
 
 impl Subcommand for BenchArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        files.read(&self.scenes);
-        files.read([&self.path, &self.object, &self.model].into_iter().flatten());
-        files.fill(bench::pictures_beside(&self.out()), "the pictures");
-        files.write(self.out(), "the results");
-        Ok(files)
-    }
-
     /// Measures, appends to the file of results, and prints a short table.
     fn run(&self) -> anyhow::Result<()> {
         let choices = self.choices()?;

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use super::Subcommand;
-use super::outputs::Files;
 use yoro_bench::compare::{CompareReport, Inputs};
 
 /// Compare two images, or two folders of images, by PSNR, SSIM and FLIP
@@ -40,18 +39,6 @@ impl CompareArgs {
 }
 
 impl Subcommand for CompareArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        for pair in self.inputs().pairs()?.0 {
-            files.read([&pair.a, &pair.b]);
-            files.read(&pair.mask);
-            if let Some(map) = pair.map {
-                files.write(map, format!("the error map of {}", pair.a.display()));
-            }
-        }
-        Ok(files)
-    }
-
     /// Compares, prints, and writes error maps if requested.
     fn run(&self) -> anyhow::Result<()> {
         let report = CompareReport::of(&self.inputs())?;

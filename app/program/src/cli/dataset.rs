@@ -14,7 +14,6 @@ use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs, PatcherArgs, Shard};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs};
-use crate::cli::outputs::Files;
 use crate::cli::settings::{OneSample, SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DepthConvention, DisparityMap, Eye, Frustum, GuardBand, Pose};
@@ -148,21 +147,6 @@ impl DatasetArgs {
 }
 
 impl Subcommand for DatasetArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        let names = self.names();
-        files.read(&names);
-        files.read([&self.path, &self.patcher.model].into_iter().flatten());
-        for name in &names {
-            let folder = self.folder(name);
-            for part in PICTURES.iter().chain([&GROUPS]) {
-                files.fill(folder.join(part), format!("the groups of {name}"));
-            }
-            files.write(folder.join(SETTINGS), format!("the groups of {name}"));
-        }
-        Ok(files)
-    }
-
     /// Makes the missing groups.
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;

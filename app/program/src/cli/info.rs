@@ -2,7 +2,6 @@
 
 use crate::cli::Subcommand;
 use crate::cli::args::GlArgs;
-use crate::cli::outputs::Files;
 use yoro_context::{Backend, Headless};
 
 /// Show the GL drivers of this machine and what they offer
@@ -16,10 +15,6 @@ pub struct InfoArgs {
 }
 
 impl Subcommand for InfoArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        Ok(Files::default())
-    }
-
     /// Prints one block per backend. Fails only if no backend works.
     fn run(&self) -> anyhow::Result<()> {
         let backends = match self.gl.backend {

@@ -11,7 +11,6 @@ use std::process::Command;
 use std::time::Duration;
 
 use super::Subcommand;
-use super::outputs::Files;
 use anyhow::{Context as _, anyhow, bail};
 use yoro_files as files;
 use yoro_files::xdg;
@@ -159,11 +158,6 @@ fn write(path: &Path, content: &[u8]) -> anyhow::Result<()> {
 }
 
 impl Subcommand for LayerArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        // The installed layer is replaced by the library that is read, which may be the same file.
-        Ok(Files::default())
-    }
-
     fn run(&self) -> anyhow::Result<()> {
         match &self.task {
             Task::Run { library, program } => run_program(&library.find()?, program),

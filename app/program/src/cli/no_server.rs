@@ -3,7 +3,6 @@
 use anyhow::bail;
 
 use crate::cli::Subcommand;
-use crate::cli::outputs::Files;
 
 /// Stream a scene to browsers (not in this build: `cargo build --release` makes one with it)
 #[derive(clap::Args, Clone, Debug)]
@@ -13,10 +12,6 @@ pub struct ServeArgs {
 }
 
 impl Subcommand for ServeArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        Ok(Files::default())
-    }
-
     fn run(&self) -> anyhow::Result<()> {
         bail!("this program was built without its server: cargo build --release makes one with it")
     }

@@ -13,7 +13,6 @@ use crate::cli::args::{self, GlArgs, list};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::message;
-use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Foveated, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use crate::cli::video::{self, EncodingArgs};
@@ -150,35 +149,10 @@ struct FrameReport {
 }
 
 impl Subcommand for RenderArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        files.read([&self.scene]);
-        if let Some(video) = &self.video {
-            video::check_name(video)?;
-            files.write(video, "the video");
-            return Ok(files);
-        }
-        let frames = self.frames.unwrap_or(1) as usize;
-        for frame in 0..frames {
-            let stem = frame_stem(&eyes::stem(&self.scene), frame, frames);
-            for output in &self.outputs {
-                let path = eyes::picture_path(&self.out, &stem, output.name());
-                files.write(path, format!("the picture {}", output.name()));
-            }
-        }
-        Ok(files)
-    }
-
     /// Renders and writes the pictures.
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;
-        match &self.video {
-            Some(_) => {
-                self.stereo.check_effect("on a video", |key| key == "guard-band")?;
-                self.foveated.check_effect("on a video", |_| false)?;
-            }
-            None => self.stereo.check(&[self.method], &[self.stereo.settings().pipeline])?,
-        }
+        self.video.as_deref().map(video::check_name).transpose()?;
         let settings = self.renderer.render_settings();
         let scene =
             yoro_scenes::load_animated(&self.scene, self.seed, self.style, self.animation.as_deref())?;

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use super::Subcommand;
-use super::outputs::Files;
 use yoro_bench::bench::Results;
-use yoro_bench::report::bench::{self, BenchReport};
+use yoro_bench::report::bench::BenchReport;
 use yoro_files as files;
 
 /// Turn results of `yoro bench` into a self-contained page, Markdown tables and figures
@@ -20,15 +19,6 @@ pub struct ReportArgs {
 }
 
 impl Subcommand for ReportArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        files.read(&self.files);
-        for name in bench::FILES {
-            files.write(self.out.join(name), format!("the report's {name}"));
-        }
-        Ok(files)
-    }
-
     /// Reads the results, writes the report and prints where it is.
     fn run(&self) -> anyhow::Result<()> {
         let results = self.files.iter().map(|path| Results::read(path)).collect::<Result<Vec<_>, _>>()?;

@@ -1,6 +1,5 @@
 //! `yoro run`: compares methods on the built-in scenes, with pictures, figures and a report page.
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use image::RgbImage;
@@ -9,7 +8,6 @@ use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs, list};
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::machine;
-use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::Eye;
@@ -72,38 +70,9 @@ impl RunArgs {
 }
 
 impl Subcommand for RunArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        let names = self.names();
-        files.read(&names);
-        let methods = self.methods.iter().map(|method| method.name());
-        let mut compared: BTreeSet<&str> =
-            methods.chain(self.pipelines.iter().map(|pipeline| pipeline.name())).collect();
-        compared.remove(Method::Conventional.name());
-        for name in &names {
-            let mut picture = |kind: &str| {
-                files.write(
-                    eyes::picture_path(&self.out, &eyes::stem(name), kind),
-                    format!("pictures of {name}"),
-                )
-            };
-            picture(Method::Conventional.name());
-            for method in &compared {
-                picture(method);
-                picture(&format!("{method}.error-map"));
-            }
-        }
-        for path in RunReport::files(&self.out).paths() {
-            files.write(path, "the report");
-        }
-        Ok(files)
-    }
-
     /// Measures, writes the report and prints its table.
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;
-        self.stereo.check_effect("here: --pipelines says what is compared", |key| key != "pipeline")?;
-        self.stereo.check(&self.methods, &self.pipelines)?;
         let settings = self.renderer.render_settings();
         let names = self.names();
         yoro_scenes::check(&names, self.seed)?;

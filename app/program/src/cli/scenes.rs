@@ -6,7 +6,6 @@ use serde_json::json;
 
 use super::Subcommand;
 use super::args;
-use super::outputs::Files;
 use yoro_assets::{self as scene, Scene};
 use yoro_files as files;
 use yoro_files::interrupt;
@@ -41,11 +40,6 @@ struct ExportArgs {
 }
 
 impl Subcommand for ScenesArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        // Nothing is read.
-        Ok(Files::default())
-    }
-
     /// Prints a table, or exports a scene.
     fn run(&self) -> anyhow::Result<()> {
         match &self.command {

@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::marker::PhantomData;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
@@ -10,7 +10,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 
 use yoro::eyes::Foveation;
 use yoro_render::RenderSettings;
-use yoro_render::stereo::{Method, Pipeline, PipelineOptions, StereoOptions};
+use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
 use yoro_settings::{FrameRate, Setting, Settings};
 use yoro_viewer::stereo_options;
 
@@ -104,18 +104,6 @@ impl<G: Group> SettingOptions<G> {
         values.collect::<Vec<_>>().join(" ")
     }
 
-    /// Refuses an option that was given although it has no effect there. `acts` says which keys have one; `place` is the
-    /// end of the sentence, such as "on a video".
-    pub fn check_effect(&self, place: &str, acts: impl Fn(&str) -> bool) -> anyhow::Result<()> {
-        match self.given.iter().find(|(key, _)| !acts(key)) {
-            Some((key, value)) => {
-                let no = if value == "false" { "no-" } else { "" };
-                bail!("--{no}{key} has no effect {place}: leave it out")
-            }
-            None => Ok(()),
-        }
-    }
-
     /// Returns the default settings, changed by the given options.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -154,25 +142,6 @@ impl SettingOptions<Foveated> {
 }
 
 impl SettingOptions<Stereo> {
-    /// Refuses options that have no effect on any of the methods, of which `yoro` runs the `pipelines`.
-    pub fn check(&self, methods: &[Method], pipelines: &[Pipeline]) -> anyhow::Result<()> {
-        let is_synthesized = methods.contains(&Method::Synthesized);
-        let is_paper = is_synthesized && pipelines.contains(&Pipeline::Paper);
-        let reads_band = |m: &Method| !matches!(m, Method::Conventional | Method::Mono);
-        let names: Vec<&str> = methods.iter().map(|method| method.name()).collect();
-        self.check_effect(&format!("on the method {}", names.join(",")), |key| match key {
-            "pipeline" | "near-field" | "switch" => is_synthesized,
-            "guard-band" => methods.iter().any(reads_band),
-            "split-disparity" => methods.contains(&Method::Hybrid),
-            _ => true,
-        })?;
-        let names: Vec<&str> = pipelines.iter().map(|pipeline| pipeline.name()).collect();
-        self.check_effect(&format!("on the pipeline {}", names.join(",")), |key| match key {
-            "imbuffer" | "linear-interpolation" | "kernel-height" | "strict" => is_paper,
-            _ => true,
-        })
-    }
-
     /// Returns the options with the chosen pipeline.
     pub fn options(&self) -> StereoOptions {
         self.options_of(self.settings.pipeline)
@@ -297,11 +266,6 @@ pub struct SettingsArgs {
 }
 
 impl SettingsArgs {
-    /// Returns the file of settings, if one was given.
-    pub fn file(&self) -> Option<&Path> {
-        self.settings.as_deref()
-    }
-
     /// Returns `defaults` changed by the given settings. Settings with options of their own, given as `key=value`, take
     /// precedence over `--set`.
     pub fn resolve(

@@ -9,7 +9,6 @@ use anyhow::{Context as _, bail, ensure};
 use crate::cli::Subcommand;
 use crate::cli::args;
 use crate::cli::machine;
-use crate::cli::outputs::Files;
 use yoro_devices::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
 use yoro_files as files;
 use yoro_render::stereo::Method;
@@ -130,25 +129,6 @@ fn parse_alpha(text: &str) -> Result<f64, String> {
 }
 
 impl Subcommand for StudyArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        match &self.command {
-            Command::Plan(args) => files.write(&args.out, "the plan"),
-            Command::Collect(args) => {
-                files.read(args.logs.iter().filter(|log| log.as_os_str() != "-"));
-                files.read(&args.plan);
-                files.write(&args.out, "the table of ratings");
-            }
-            Command::Analyse(args) => {
-                files.read([&args.ratings]);
-                for path in Study::files(&args.out).paths() {
-                    files.write(path, "the report");
-                }
-            }
-        }
-        Ok(files)
-    }
-
     fn run(&self) -> anyhow::Result<()> {
         match &self.command {
             Command::Plan(args) => plan(args),

@@ -7,7 +7,6 @@ use image::{GrayImage, Luma};
 
 use crate::cli::Subcommand;
 use crate::cli::args::{GlArgs, PatcherArgs, parse_far, parse_finite, parse_fov, parse_positive};
-use crate::cli::outputs::Files;
 use crate::cli::settings::{SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
 use crate::cli::video::{self, EncodingArgs};
@@ -161,49 +160,15 @@ impl Job {
         }
         Ok(())
     }
-
-    /// Returns all files that will be written, with a description of each.
-    fn outputs(&self, dominant: SourceEye) -> Vec<(PathBuf, String)> {
-        let kinds = [
-            ("other eye", Some(&self.out)),
-            ("mask", self.mask.as_ref()),
-            ("disparity", self.disparity.as_ref()),
-            ("source columns", self.source.as_ref()),
-        ];
-        let given = kinds.into_iter().filter_map(|(kind, path)| Some((kind, path?)));
-        let what = |kind: &str| format!("the {kind} of {}", self.color.display());
-        given
-            .flat_map(|(kind, path)| {
-                let eyes = dominant.targets().iter();
-                eyes.map(move |(eye, _)| (dominant.place(path, *eye), what(kind)))
-            })
-            .collect()
-    }
 }
 
 impl Subcommand for SynthesizeArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        ensure!(self.near < self.far, "--near {} must be less than --far {}", self.near, self.far);
-        self.patcher.check()?;
-        let mut files = Files::default();
-        files.read(&self.patcher.model);
-        if let Some(video) = &self.video {
-            video::check_name(&self.out)?;
-            files.read([video]);
-            files.write(&self.out, "the video");
-            return Ok(files);
-        }
-        for job in jobs(self)? {
-            job.check()?;
-            files.read([&job.color, &job.depth]);
-            job.outputs(self.dominant).into_iter().for_each(|(path, what)| files.write(path, what));
-        }
-        Ok(files)
-    }
-
     /// Synthesizes one image or a folder of them.
     fn run(&self) -> anyhow::Result<()> {
+        ensure!(self.near < self.far, "--near {} must be less than --far {}", self.near, self.far);
+        self.patcher.check()?;
         if let Some(file) = &self.video {
+            video::check_name(&self.out)?;
             // A wrong file is reported before a context is opened.
             Reader::open(file)?.rgbd()?;
             let headless = self.gl.open()?;
@@ -216,6 +181,7 @@ impl Subcommand for SynthesizeArgs {
             );
         }
         let jobs = jobs(self)?;
+        jobs.iter().try_for_each(Job::check)?;
         let headless = self.gl.open()?;
         let mut offline = Offline::new(headless.gl(), &self.synthesis.options())?;
         let mut patcher = self.patcher.create(headless.gl())?;

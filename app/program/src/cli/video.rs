@@ -38,28 +38,15 @@ pub fn check_name(path: &Path) -> anyhow::Result<()> {
 
 /// Refuses eyes whose RGBD video would have more pixels than can be encoded.
 pub fn check_size(eyes: &EyeArgs, guard_band: GuardBand) -> anyhow::Result<()> {
-    let [width, height] = eyes.size;
+    let views = eyes.pair(Pose::IDENTITY).synthesis_views(guard_band)?;
     // A video has two pictures side by side, each with an even number of pixels a side.
-    let coded = |size: [u32; 2]| -> anyhow::Result<[usize; 2]> {
-        let views = EyeArgs { size, ..eyes.clone() }.pair(Pose::IDENTITY).synthesis_views(guard_band)?;
-        let [width, height] = views.source.size.map(|side| (side as usize).next_multiple_of(2));
-        Ok([2 * width, height])
-    };
-    let whole = coded(eyes.size)?;
-    if fits(whole) {
-        return Ok(());
-    }
-    let scaled = |width: u32| [width, (width * height / eyes.size[0]).max(16)];
-    let largest = (16..width).rev().map(scaled).find(|size| coded(*size).is_ok_and(fits));
-    let [w, h] = whole;
-    match largest {
-        Some([x, y]) => bail!(
-            "the video of eyes of {width}x{height} pixels would have {w}x{h} with guard band and depth, more than can be encoded: give --size {x}x{y} or less"
-        ),
-        None => bail!(
-            "the video would have {w}x{h} pixels, more than can be encoded: give a smaller --size or a narrower --guard-band"
-        ),
-    }
+    let [width, height] = views.source.size.map(|side| (side as usize).next_multiple_of(2));
+    ensure!(
+        fits([2 * width, height]),
+        "the video would have {}x{height} pixels, more than can be encoded: give a smaller --size",
+        2 * width
+    );
+    Ok(())
 }
 
 /// Renders the dominant eye at each of the poses `heads`, with its guard band, and writes an RGBD video.

@@ -8,7 +8,6 @@ use glam::{EulerRot, Quat};
 
 use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs};
-use crate::cli::outputs::Files;
 use crate::cli::settings::{Lenses, Renderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
 use yoro_files as files;
@@ -85,14 +84,6 @@ impl ViewArgs {
 }
 
 impl Subcommand for ViewArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        files.read(&self.scene);
-        files.read(self.settings.file());
-        files.write(&self.png, "the picture");
-        Ok(files)
-    }
-
     /// Draws and writes the picture.
     fn run(&self) -> anyhow::Result<()> {
         if !files::has_extension(&self.png, &["png"]) {

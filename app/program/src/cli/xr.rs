@@ -9,7 +9,6 @@ use serde::Serialize;
 
 use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs};
-use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyePair};
@@ -176,21 +175,6 @@ impl Collected {
 }
 
 impl Subcommand for XrArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        files.read(&self.scene);
-        files.read(self.settings.file());
-        files.read(&self.runtime);
-        if let Some(folder) = &self.capture {
-            for method in if self.methods.is_empty() { &MethodChoice::ALL[..] } else { &self.methods } {
-                for eye in Eye::BOTH {
-                    files.write(capture_path(folder, *method, eye), "the captured frames");
-                }
-            }
-        }
-        Ok(files)
-    }
-
     /// Shows the scene until the user, the runtime or `--frames` ends it.
     fn run(&self) -> anyhow::Result<()> {
         let settings = self.resolve()?;

@@ -6,7 +6,6 @@ use anyhow::bail;
 
 use super::which::{WhichArgs, each};
 use crate::cli::Subcommand;
-use crate::cli::outputs::Files;
 use yoro_devices::experiment::{self, Experiment, length, method_name};
 
 /// Make the runs of an experiment: methods, scenes and repetitions in a balanced order, with pauses to cool down
@@ -30,11 +29,6 @@ pub struct ExperimentArgs {
 }
 
 impl Subcommand for ExperimentArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        // Captures replace no file. A folder that belongs to another experiment is refused.
-        Ok(Files::default())
-    }
-
     /// Makes the runs on each device.
     fn run(&self) -> anyhow::Result<()> {
         let mut experiment = Experiment::read(&self.file)?;

@@ -6,7 +6,6 @@ use anyhow::ensure;
 
 use crate::cli::Subcommand;
 use crate::cli::args;
-use crate::cli::outputs::Files;
 use yoro_devices::capture::{FaultKind, Outcome};
 use yoro_devices::farm;
 
@@ -32,11 +31,6 @@ pub struct FarmArgs {
 }
 
 impl Subcommand for FarmArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        // A capture replaces no file.
-        Ok(Files::default())
-    }
-
     fn run(&self) -> anyhow::Result<()> {
         let Some(folder) = &self.read else {
             let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-=/".contains(c);

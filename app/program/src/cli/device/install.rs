@@ -6,7 +6,6 @@ use anyhow::ensure;
 
 use super::which::{WhichArgs, each};
 use crate::cli::Subcommand;
-use crate::cli::outputs::Files;
 
 /// The APKs that `cargo xtask apk` makes, with the release first.
 const BUILT: [&str; 2] = ["target/apk/yoro.apk", "target/apk/yoro-debug.apk"];
@@ -22,11 +21,6 @@ pub struct InstallArgs {
 }
 
 impl Subcommand for InstallArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        // Nothing is written here.
-        Ok(Files::default())
-    }
-
     /// Installs the APK on each device.
     fn run(&self) -> anyhow::Result<()> {
         let built = || BUILT.iter().map(Path::new).find(|path| path.is_file()).unwrap_or(Path::new(BUILT[0]));

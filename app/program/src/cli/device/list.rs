@@ -2,7 +2,6 @@
 
 use super::which::SourceArgs;
 use crate::cli::Subcommand;
-use crate::cli::outputs::Files;
 use yoro_devices::adb::{Adb as _, Device, DeviceError, State};
 use yoro_devices::phone;
 
@@ -14,10 +13,6 @@ pub struct ListArgs {
 }
 
 impl Subcommand for ListArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        Ok(Files::default())
-    }
-
     /// Prints a table.
     fn run(&self) -> anyhow::Result<()> {
         let adb = self.source.open()?;

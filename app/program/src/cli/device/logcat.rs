@@ -12,7 +12,6 @@ use super::which::WhichArgs;
 use crate::cli::Subcommand;
 use crate::cli::args::{self, parse_positive};
 use crate::cli::message;
-use crate::cli::outputs::Files;
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION, Writer};
 use yoro_devices::follow::{Event, Follower, faults_of_loss};
@@ -66,11 +65,6 @@ pub struct LogcatArgs {
 }
 
 impl Subcommand for LogcatArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        // A capture replaces no file, and therefore no input.
-        Ok(Files::default())
-    }
-
     /// Follows or reads the log, and prints its faults.
     fn run(&self) -> anyhow::Result<()> {
         match &self.file {

@@ -10,7 +10,6 @@ pub mod run;
 mod which;
 
 use super::Subcommand;
-use super::outputs::Files;
 
 /// Measure on phones and headsets
 #[derive(clap::Args, Clone, Debug)]
@@ -45,10 +44,6 @@ impl DeviceArgs {
 }
 
 impl Subcommand for DeviceArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        self.subcommand().files()
-    }
-
     fn run(&self) -> anyhow::Result<()> {
         self.subcommand().run()
     }

@@ -7,7 +7,6 @@ use anyhow::ensure;
 
 use crate::cli::Subcommand;
 use crate::cli::machine;
-use crate::cli::outputs::Files;
 use yoro_devices::capture;
 use yoro_devices::report::DeviceReport;
 use yoro_files as files;
@@ -31,11 +30,6 @@ pub struct ReportArgs {
 }
 
 impl Subcommand for ReportArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        // The files of captures have different names than those of the report.
-        Ok(Files::default())
-    }
-
     /// Reads the captures, writes the report and prints the main figures.
     fn run(&self) -> anyhow::Result<()> {
         let mut sets = Vec::new();

@@ -7,7 +7,6 @@ use anyhow::bail;
 use super::which::{WhichArgs, each, folder_of};
 use crate::cli::Subcommand;
 use crate::cli::args::{self, parse_positive};
-use crate::cli::outputs::Files;
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::Outcome;
 use yoro_devices::foreign::Subject;
@@ -70,11 +69,6 @@ pub struct RunArgs {
 }
 
 impl Subcommand for RunArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        // A capture replaces no file, and therefore no input.
-        Ok(Files::default())
-    }
-
     /// Makes the run on each device.
     fn run(&self) -> anyhow::Result<()> {
         let other = self.package.as_ref().zip(self.activity.as_ref()).map(|(package, activity)| Other {

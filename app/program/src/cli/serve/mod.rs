@@ -30,7 +30,6 @@ use self::web_server::WebServer;
 use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs};
 use crate::cli::eyes;
-use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
 use yoro_gl::Context;
 use yoro_media::video::{FfmpegEncoder, LiveEncoder, LiveEncoderKind};
@@ -122,12 +121,6 @@ impl EncoderArg {
 const MAX_SIDE_OF_THREE_PARTS: u16 = 1024;
 
 impl Subcommand for ServeArgs {
-    fn files(&self) -> anyhow::Result<Files> {
-        let mut files = Files::default();
-        files.read([&self.scene]);
-        Ok(files)
-    }
-
     fn run(&self) -> anyhow::Result<()> {
         let folder = match &self.page {
             Some(folder) => folder.clone(),
