@@ -154,22 +154,42 @@ fn vertex_colours_become_a_palette() {
 }
 
 #[test]
+fn a_group_that_is_read_in_pieces_is_joined() {
+    let mut text = String::new();
+    for i in 0..70_000 {
+        text += &format!("v {i} 0 0\nv {i} 1 0\nv {i} 0 1\nvn 1 0 0\nf -3//-1 -2//-1 -1//-1\n");
+    }
+    let model = obj(&text);
+    assert_eq!((model.triangle_count(), model.parts.len()), (70_000, 1));
+}
+
+#[test]
 fn absurd_files_are_refused_in_a_sentence() {
-    refused("# nothing\nv 1 2 3\n", &["no triangle", "export"]);
+    refused("", &["no triangle", "export"]);
+    refused("# nothing\nv 1 2 3\n", &["no triangle"]);
+    refused("<html>not a model</html>", &["no triangle"]);
     refused([0x7f, b'E', b'L', b'F', 0, 0, 1], &["line 1", "binary"]);
+    refused("v 0 0 0\nf 1 1 1", &["no triangle"]);
     refused("v nan nan nan\nv 0 1 0\nv 1 0 0\nf 1 2 3", &["no triangle"]);
-    refused("v 1,5 2 3", &["line 1", "`1,5`", "number"]);
+    refused("v 1 x 3", &["line 1", "`x`", "number"]);
+    refused("v 1,5 2,5 3", &["`1,5`", "point"]);
     refused("\n\nv 1 2", &["line 3", "3 numbers"]);
-    refused(square("f 1 2 5"), &["line 5", "`5`", "vertex"]);
-    refused(square("f 1 2 \\\n-5"), &["line 6", "`-5`"]);
-    refused(square("f 1/9 2/1 3/1"), &["texture coordinate"]);
-    refused(square("vn 0 0 1\nf 1//2 2//1 3//1"), &["normal"]);
-    refused(square("f 0 1 2"), &["`0`"]);
+    refused("vn 1 2", &["`vn`"]);
+    refused("vt", &["`vt`"]);
+    refused(square("f 1 2 5"), &["line 5", "vertex 5", "only 4"]);
+    refused(square("f 1 2 \\\n-5"), &["line 6", "5 back"]);
+    refused(square("f 1/9 2/1 3/1"), &["texture coordinate 9"]);
+    refused(square("vn 0 0 1\nf 1//2 2//1 3//1"), &["normal 2"]);
+    refused(square("f 0 1 2"), &["counted from 1"]);
+    refused(square("f a b c"), &["`a`"]);
     refused(square("f 1.5 2 3"), &["`1.5`"]);
-    refused(square("f 1/2/3/4 2 3"), &["corner"]);
-    refused(square("f 9223372036854775807 1 2"), &["vertex"]);
-    refused(square("f -9223372036854775808 1 2"), &["vertex"]);
+    refused(square("f 1/2/3/4 2 3"), &["`1/2/3/4`"]);
+    refused(square("f /1 2 3"), &["`/1`"]);
+    refused(square("f 9223372036854775807 1 2"), &["9223372036854775807"]);
+    refused(square("f -9223372036854775808 1 2"), &["back"]);
     refused(square("f 99999999999999999999999 1 2"), &["corner"]);
+    refused(square("f 1/-9223372036854775808 1 2"), &["back"]);
+    refused(square("f 1/9223372036854775807 2 3"), &["texture coordinate"]);
     refused(vec![b'x'; 17 << 20], &["line 1", "long"]);
     refused("v 1e30 0 0\nv 0 1e30 0\nv 0 0 0\nf 1 2 3", &["scale"]);
 }
@@ -186,9 +206,9 @@ fn paths_of_other_things_are_refused_with_a_remedy() {
 }
 
 #[test]
-fn faces_may_refer_forward() {
-    assert_eq!(obj(&format!("f 1 2 3 4\ng x\nf 1 2 3\n{SQUARE}")).triangle_count(), 3);
-    refused(format!("f 1 2 9\n{SQUARE}"), &["line 1", "`9`"]);
+fn faces_may_refer_forward_within_their_group() {
+    assert_eq!(obj(&format!("f 1 2 3 4\n{SQUARE}")).triangle_count(), 2);
+    refused(format!("f 1 2 3\ng x\nf 1 2 3\n{SQUARE}"), &["line 1", "vertex 1"]);
 }
 
 #[test]
@@ -305,6 +325,9 @@ fn bad_pictures_are_named() {
     folder.put("p.png", &huge);
     let message = load(&scene).unwrap_err().to_string();
     assert!(message.contains("p.png") && message.contains("scale it down"), "{message}");
+    folder.put("p.png", "not a picture at all");
+    let message = load(&scene).unwrap_err().to_string();
+    assert!(message.contains("p.png"), "{message}");
 }
 
 #[test]
@@ -320,7 +343,11 @@ fn viewpoints_are_read_from_camera_json() {
     for (text, word) in [
         ("", "EOF"),
         ("[]", "no viewpoint"),
+        ("{}", "map"),
+        (r#"[{"position": [1, 2], "target": [0, 0, 0]}]"#, "line 1"),
+        (r#"[{"position": [1, 2, 3]}]"#, "target"),
         (r#"[{"position": [1, 2, 3], "target": [1, 2, 3]}]"#, "looks at"),
+        (r#"[{"position": [1e39, 2, 3], "target": [1, 2, 3]}]"#, ""),
     ] {
         folder.put("a.camera.json", text);
         let message = load(&scene).unwrap_err().to_string();
@@ -733,6 +760,7 @@ fn damaged_gltf_is_refused_in_a_sentence() {
     };
     changed("\"count\": 3", "\"count\": 4", "accessor 0");
     changed("\"count\": 3", "\"count\": 18446744073709551615", "accessor 0");
+    changed("\"byteLength\": 36", "\"byteLength\": 36000", "accessor 0");
     changed("\"byteLength\": 104", "\"byteLength\": 9999", "instead of 9999");
     changed("\"VEC3\"", "\"VEC2\"", "accessor 0");
     changed("\"mesh\": 0", "\"mesh\": 7", "nodes[1].mesh");
@@ -740,6 +768,9 @@ fn damaged_gltf_is_refused_in_a_sentence() {
     changed("data:application/octet-stream;base64,", "data:x;base64,***", "damaged");
     changed("data:application/octet-stream;base64,", "gone.bin?", "gone.bin");
     changed("\"scene\": 0", "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"]", "KHR_draco");
+    for bad in ["", "{}", "[]", "null", "glTF", "{\"asset\": {\"version\": \"2.0\"}}"] {
+        assert!(load(&folder.put("a.gltf", bad)).unwrap_err().to_string().contains("a.gltf"));
+    }
     let without_bounds = good.replacen(r#", "min": [0,0,0], "max": [1,1,0]"#, "", 1);
     assert!(without_bounds.len() < good.len() && load(&folder.put("a.gltf", without_bounds)).is_ok());
     // A cycle of nodes ends.
@@ -752,6 +783,10 @@ fn damaged_gltf_is_refused_in_a_sentence() {
 fn unusual_but_valid_gltf_is_read() {
     let folder = Folder::new();
     let (good, _) = gltf_text(&folder, true);
+    let changed = |from: &str, to: &str| {
+        assert!(good.contains(from), "{from}");
+        good.replacen(from, to, 1)
+    };
     for (from, to) in [
         ("\"POSITION\": 0", "\"POSITION\": 0, \"_FEATURE_ID_0\": 3"),
         ("\"name\": \"tri\"", "\"name\": \"tri\", \"extras\": 5"),
@@ -762,11 +797,14 @@ fn unusual_but_valid_gltf_is_read() {
         check_gltf(&load(&folder.put("a.gltf", text)).unwrap());
     }
     // What an extension leaves out is not reported as the mistake.
-    let text = good
-        .replacen("\"scene\": 0", "\"extensionsRequired\": [\"EXT_meshopt_compression\"], \"scene\": 0", 1)
-        .replacen("\"POSITION\": 0", "\"POSITION\": 99", 1);
-    let message = load(&folder.put("a.gltf", text)).unwrap_err().to_string();
-    assert!(message.contains("EXT_meshopt_compression") && message.contains("without it"), "{message}");
+    for extension in ["KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
+        let required = format!("\"extensionsRequired\": [\"{extension}\"], \"scene\": 0");
+        let text = changed("\"scene\": 0", &required)
+            .replacen("\"bufferView\": 0, \"componentType\"", "\"componentType\"", 1)
+            .replacen("\"POSITION\": 0", "\"POSITION\": 99", 1);
+        let message = load(&folder.put("a.gltf", text)).unwrap_err().to_string();
+        assert!(message.contains(extension) && message.contains("without it"), "{message}");
+    }
 }
 
 #[test]

@@ -156,6 +156,14 @@ fn what_the_format_lets_out_may_be_left_out() {
     let mut empty = File::new();
     empty.root["scenes"] = json!([{"name": "nothing"}]);
     assert!(empty.refusal().contains("no triangle"));
+    empty.root["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+    assert!(empty.refusal().contains("compressed by KHR_draco_mesh_compression"));
+    for (version, meshes) in [("1.0", json!([])), ("2.0", json!({"mesh": {}}))] {
+        let mut old = File::new();
+        old.root["asset"]["version"] = json!(version);
+        old.root["meshes"] = meshes;
+        assert!(old.refusal().contains("this is glTF 1.0"), "{}", old.refusal());
+    }
     for root in [json!([]), json!({"scenes": 3, "animations": [1, {"channels": [2]}]}), json!(null)] {
         let file = File { root, ..File::new() };
         fs::write(file.folder.path().join("b.gltf"), file.root.to_string()).unwrap();

@@ -400,18 +400,23 @@ fn damaged_animations_are_refused_in_a_sentence() {
     change("\"path\": \"rotation\"", "\"path\": \"colour\"", "unknown path");
     change("\"STEP\"", "\"JUMP\"", "interpolation");
     change("\"path\": \"scale\"", "\"path\": \"weights\"", "node 1, which has no morph targets");
-    // Accessors of the wrong kind, and of the wrong length; times that do not increase.
+    // Accessors of the wrong kind, and of the wrong length.
     change("\"input\": 1, \"output\": 2", "\"input\": 1, \"output\": 5", "accessor 5 has the wrong type");
+    change("\"input\": 1, \"output\": 2", "\"input\": 2, \"output\": 2", "accessor 2 has the wrong type");
     change("\"CUBICSPLINE\"", "\"LINEAR\"", "channel 1 of animation 0 has 27 numbers for 3 keys of 3 each");
     let mut file = File::default();
-    let (mesh, times) = (triangle(&mut file), file.floats("SCALAR", &[1.0, 1.0]));
-    let moves = file.floats("VEC3", &[0.0; 6]);
-    let text = file.text(&format!(
-        r#""nodes": [{{"mesh": 0}}], "meshes": [{{"primitives": [{{"attributes": {{"POSITION": {mesh}}}}}]}}],
-        "animations": [{{"channels": [{{"sampler": 0, "target": {{"node": 0, "path": "translation"}}}}],
-          "samplers": [{{"input": {times}, "output": {moves}}}]}}]"#
-    ));
-    refused(&text, "the times of channel 0 of animation 0 do not increase");
+    let mesh = triangle(&mut file);
+    for times in [[1.0, 1.0], [2.0, 1.0], [0.0, f32::NAN], [-1.0, 0.0]] {
+        let mut file =
+            File { data: file.data.clone(), accessors: file.accessors.clone(), views: file.views.clone() };
+        let (times, moves) = (file.floats("SCALAR", &times), file.floats("VEC3", &[0.0; 6]));
+        let text = file.text(&format!(
+            r#""nodes": [{{"mesh": 0}}], "meshes": [{{"primitives": [{{"attributes": {{"POSITION": {mesh}}}}}]}}],
+            "animations": [{{"channels": [{{"sampler": 0, "target": {{"node": 0, "path": "translation"}}}}],
+              "samplers": [{{"input": {times}, "output": {moves}}}]}}]"#
+        ));
+        refused(&text, "the times of channel 0 of animation 0 do not increase");
+    }
     let skinned = |joints| bent(WEIGHTS, joints, |_| String::new());
     refused(&skinned([[0, 1, 0, 0], [0, 2, 0, 0], [0; 4]]), "joint 2 of skin 0, which has 2");
     let skin = skinned([[0, 1, 0, 0]; 3]);

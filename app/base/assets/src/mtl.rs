@@ -1,5 +1,10 @@
-//! MTL material libraries.
+//! MTL material libraries: makes what [`tobj::load_mtl_buf`] reads safe and complete.
+//!
+//! tobj knows one spelling of each keyword, leaves the options of map statements to its caller, and panics on a colour
+//! with fewer than three numbers. So a library is first rewritten statement by statement: keywords in tobj's spelling,
+//! numbers checked, and unintelligible statements left out with a warning.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
@@ -36,18 +41,29 @@ pub(super) struct MtlEntry {
 
 /// Reads the text of a library. Never fails: unintelligible statements are left out with a warning.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Vec<MtlEntry> {
-    let mut all: Vec<Statements> = Vec::new();
+    let mut text = String::new();
+    let mut faults = 0;
     for statement in statements(&String::from_utf8_lossy(bytes)) {
-        let (keyword, value) = statement.split_once(char::is_whitespace).unwrap_or((&statement, ""));
-        let value = value.trim();
-        if keyword.eq_ignore_ascii_case("newmtl") {
-            let name = if value.is_empty() { "unnamed" } else { value };
-            all.push(Statements { name: name.into(), ..Statements::default() });
-        } else if all.last_mut().and_then(|material| material.add(keyword, value)).is_none() {
-            log::warn!("{}: `{}` is ignored", path.display(), abridged(&statement));
+        match canonical(&statement) {
+            Some(line) => {
+                text.push_str(&line);
+                text.push('\n');
+            }
+            None => {
+                faults += 1;
+                if faults <= 5 {
+                    log::warn!("{}: `{}` is ignored", path.display(), abridged(&statement));
+                }
+            }
         }
     }
-    all.into_iter().map(Statements::entry).collect()
+    match tobj::load_mtl_buf(&mut Cursor::new(text)) {
+        Ok((materials, _)) => materials.iter().map(entry).collect(),
+        Err(e) => {
+            log::warn!("{} is not used ({e}): its materials are replaced by a default", path.display());
+            Vec::new()
+        }
+    }
 }
 
 /// Returns the lines without comments and surrounding blanks. A line that ends in a backslash is joined with the next.
@@ -92,105 +108,96 @@ pub(super) fn abridged(statement: &str) -> String {
     s
 }
 
-/// What a library states about one material.
-#[derive(Default)]
-struct Statements {
-    name: String,
-    diffuse: Option<Vec3>,
-    specular: Option<Vec3>,
-    emissive: Option<Vec3>,
-    shininess: Option<f32>,
-    roughness: Option<f32>,
-    metalness: Option<f32>,
-    opacity: Option<f32>,
-    transparency: Option<f32>,
-    illumination: Option<f32>,
-    diffuse_map: Option<MapStatement>,
-    specular_map: Option<MapStatement>,
-    emissive_map: Option<MapStatement>,
-    bump_map: Option<MapStatement>,
-    normal_map: Option<MapStatement>,
-    alpha_map: Option<MapStatement>,
+/// Returns the statement in tobj's spelling, or `None` if it is unintelligible.
+fn canonical(statement: &str) -> Option<String> {
+    let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
+    let rest = rest.trim();
+    let numbers: Vec<f32> =
+        rest.split_whitespace().map_while(|w| w.parse().ok()).filter(|n: &f32| n.is_finite()).collect();
+    let lower = keyword.to_ascii_lowercase();
+    let name = match lower.as_str() {
+        "newmtl" => return Some(format!("newmtl {}", if rest.is_empty() { "unnamed" } else { rest })),
+        "ka" | "kd" | "ks" | "ke" => {
+            let [r, g, b] = match *numbers.as_slice() {
+                [grey] => [grey; 3],
+                [r, g, b, ..] => [r, g, b],
+                _ => return None,
+            };
+            return Some(format!("K{} {r} {g} {b}", &lower[1..]));
+        }
+        "ns" | "ni" => return numbers.first().map(|n| format!("N{} {n}", &lower[1..])),
+        "d" => {
+            let number = rest.strip_prefix("-halo").unwrap_or(rest).split_whitespace().next()?;
+            return number.parse().ok().filter(|n: &f32| n.is_finite()).map(|n| format!("d {n}"));
+        }
+        "tr" | "pr" | "pm" => return numbers.first().map(|n| format!("{lower} {n}")),
+        "illum" => return numbers.first().map(|n| format!("illum {}", n.clamp(0.0, 10.0) as u8)),
+        "map_kd" => "map_Kd",
+        "map_ks" => "map_Ks",
+        "map_ke" => "map_ke",
+        "map_bump" | "bump" => "bump",
+        "norm" | "map_norm" | "map_kn" => "norm",
+        "map_d" => "map_d",
+        // Not used here, but not worth a warning either.
+        _ if rest.is_empty() => return Some(String::new()),
+        _ => return Some(format!("other {rest}")),
+    };
+    (!rest.is_empty()).then(|| format!("{name} {rest}"))
 }
 
-impl Statements {
-    /// Adds a statement, or returns `None` if it is unintelligible. Keywords are read in any case.
-    fn add(&mut self, keyword: &str, value: &str) -> Option<()> {
-        let words = value.strip_prefix("-halo").unwrap_or(value).split_whitespace();
-        let numbers: Vec<f32> =
-            words.map_while(|w| w.parse().ok()).filter(|number: &f32| number.is_finite()).collect();
-        let first = || numbers.first().copied().map(Some);
-        let color = || match *numbers.as_slice() {
-            [grey] => Some(Some(Vec3::splat(grey.max(0.0)))),
-            [r, g, b, ..] => Some(Some(Vec3::new(r, g, b).max(Vec3::ZERO))),
-            _ => None,
-        };
-        let map = || map_statement(value).map(Some);
-        match keyword.to_ascii_lowercase().as_str() {
-            "kd" => self.diffuse = color()?,
-            "ks" => self.specular = color()?,
-            "ke" => self.emissive = color()?,
-            "ns" => self.shininess = first()?,
-            "pr" => self.roughness = first()?,
-            "pm" => self.metalness = first()?,
-            "d" => self.opacity = first()?,
-            "tr" => self.transparency = first()?,
-            "illum" => self.illumination = first()?,
-            "map_kd" => self.diffuse_map = map()?,
-            "map_ks" => self.specular_map = map()?,
-            "map_ke" => self.emissive_map = map()?,
-            "map_bump" | "bump" => self.bump_map = map()?,
-            "norm" | "map_norm" | "map_kn" => self.normal_map = map()?,
-            "map_d" => self.alpha_map = map()?,
-            // Not used here, but not worth a warning either.
-            _ => {}
-        }
-        Some(())
+fn entry(m: &tobj::Material) -> MtlEntry {
+    let extra = |key: &str| m.unknown_param.get(key);
+    let number = |key: &str| extra(key).and_then(|v| v.parse::<f32>().ok());
+    let map = |s: Option<&String>| s.and_then(|s| map_statement(s));
+    let default = Material::default();
+    let (diffuse, specular) = (map(m.diffuse_texture.as_ref()), map(m.specular_texture.as_ref()));
+    let emissive = map(extra("map_ke"));
+    let colour =
+        |c: Option<[f32; 3]>, otherwise: Vec3| c.map_or(otherwise, |c| Vec3::from(c).max(Vec3::ZERO));
+    let mut kd =
+        colour(m.diffuse, if diffuse.is_some() { Vec3::ONE } else { default.diffuse }).min(Vec3::ONE);
+    // Exporters that leave Kd black beside a map mean the map's colour.
+    if diffuse.is_some() && kd == Vec3::ZERO {
+        kd = Vec3::ONE;
     }
-
-    fn entry(self) -> MtlEntry {
-        let default = Material::default();
-        let has_map = self.diffuse_map.is_some();
-        let otherwise = if has_map { Vec3::ONE } else { default.diffuse };
-        let mut diffuse = self.diffuse.unwrap_or(otherwise).min(Vec3::ONE);
-        // Exporters that leave Kd black beside a map mean the map's colour.
-        if has_map && diffuse == Vec3::ZERO {
-            diffuse = Vec3::ONE;
-        }
-        let is_matt = self.illumination.is_some_and(|i| i < 2.0);
-        let otherwise = if is_matt { Vec3::ZERO } else { default.specular };
-        let mut specular = self.specular.unwrap_or(otherwise).min(Vec3::ONE);
-        if let Some(metalness) = self.metalness.filter(|_| self.specular.is_none()) {
-            let metalness = metalness.clamp(0.0, 1.0);
-            specular = specular.lerp(diffuse, metalness);
-            diffuse *= 1.0 - metalness;
-        }
-        let mut emissive = self.emissive.unwrap_or_default();
-        if self.emissive_map.is_some() && emissive == Vec3::ZERO {
-            emissive = Vec3::ONE;
-        }
-        let of_shininess = |exponent: f32| (2.0 / (exponent.max(0.0) + 2.0)).sqrt();
-        let roughness = self.roughness.map(|r| r.clamp(0.0, 1.0)).or(self.shininess.map(of_shininess));
-        let opacity = self.opacity.or(self.transparency.map(|t| 1.0 - t)).unwrap_or(1.0);
-        // Opacity 0 is taken as opaque: nobody models the invisible, and some exporters swap the meaning of d and Tr.
-        let alpha = if opacity > 0.0 && opacity < 1.0 { Alpha::Blend(opacity) } else { Alpha::Opaque };
-        MtlEntry {
-            material: Material {
-                name: self.name,
-                diffuse,
-                specular,
-                emissive,
-                roughness: roughness.unwrap_or(default.roughness),
-                alpha,
-                ..obj_default()
-            },
-            diffuse: self.diffuse_map,
-            specular: self.specular_map,
-            emissive: self.emissive_map,
-            bump: self.bump_map,
-            normal: self.normal_map,
-            alpha: self.alpha_map,
-        }
+    let mut ks = colour(m.specular, default.specular).min(Vec3::ONE);
+    if m.specular.is_none() && m.illumination_model.is_some_and(|i| i < 2) {
+        ks = Vec3::ZERO;
+    }
+    if let Some(metallic) =
+        number("pm").map(|p| p.clamp(0.0, 1.0)).filter(|&p| p > 0.0 && m.specular.is_none())
+    {
+        ks = ks.lerp(kd, metallic);
+        kd *= 1.0 - metallic;
+    }
+    let mut ke = colour(m.emissive, Vec3::ZERO);
+    if emissive.is_some() && ke == Vec3::ZERO {
+        ke = Vec3::ONE;
+    }
+    let roughness = match (number("pr"), m.shininess) {
+        (Some(pr), _) => pr.clamp(0.0, 1.0),
+        (None, Some(ns)) => (2.0 / (ns.max(0.0) + 2.0)).sqrt(),
+        (None, None) => default.roughness,
+    };
+    let opacity = m.dissolve.or_else(|| number("tr").map(|t| 1.0 - t)).unwrap_or(1.0);
+    // Opacity 0 is taken as opaque: nobody models the invisible, and some exporters swap the meaning of d and Tr.
+    let alpha = if opacity > 0.0 && opacity < 1.0 { Alpha::Blend(opacity) } else { Alpha::Opaque };
+    MtlEntry {
+        material: Material {
+            name: m.name.clone(),
+            diffuse: kd,
+            specular: ks,
+            emissive: ke,
+            roughness,
+            alpha,
+            ..obj_default()
+        },
+        diffuse,
+        specular,
+        emissive,
+        bump: map(m.normal_texture.as_ref()),
+        normal: map(extra("norm")),
+        alpha: map(m.dissolve_texture.as_ref()),
     }
 }
 

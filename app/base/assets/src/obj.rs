@@ -1,11 +1,12 @@
 //! OBJ files with their MTL libraries.
 //!
-//! The numbers of a file are read into lists; each corner of a face names a position and perhaps texture coordinates and
-//! a normal, counted from the start of the file or back from the face. Faces with the same name, material and smoothing
-//! become one mesh.
+//! [`tobj`] reads the numbers and builds the single index. Statements reach it through a normalizer, because on its own
+//! it has no line numbers, joins materials that it does not know, lets vertices with and without normals get out of
+//! step, overflows on absurd indices, and does not support continued lines, trailing comments or smoothing groups.
+//! Polygons are triangulated here: tobj makes fans of them, which is wrong for concave ones.
 
 use std::collections::HashMap;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read, Write as _};
 use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Vec2, Vec3};
@@ -15,7 +16,7 @@ use super::model::{Alpha, Material, Model, Vertex};
 use super::mtl::{self, MapStatement, MtlEntry};
 use super::palette::{paint, palette};
 use super::polygon::Triangulator;
-use super::repair::{NO_NORMAL, NO_UV, RawMesh, assemble};
+use super::repair::{RawMesh, assemble};
 use super::textures::{AlphaUse, Built, Recipe, Source, TextureSet, find_file};
 
 /// Maximum length of a statement in bytes: a face of a million corners.
@@ -23,6 +24,9 @@ const MAX_STATEMENT: usize = 16 << 20;
 
 /// Maximum size of an MTL library in bytes.
 const MAX_LIBRARY: u64 = 64 << 20;
+
+/// Number of faces after which a new tobj model begins, to keep tobj's tables small.
+const FACES_PER_MODEL: usize = 1 << 16;
 
 /// Reads an OBJ file with its materials and textures. One unit is one metre.
 ///
@@ -34,15 +38,28 @@ const MAX_LIBRARY: u64 = 64 << 20;
 /// [`SceneError`] if the file cannot be read or parsed, or a texture exists but is damaged.
 pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
     let file = yoro_files::open(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
-    let parsed = Parser::new(path).read(BufReader::with_capacity(1 << 20, file))?;
-    if parsed.has_curves {
+    let mut input = Normalizer::new(path, BufReader::with_capacity(1 << 20, file));
+    let options = tobj::LoadOptions { single_index: true, ..Default::default() };
+    // tobj does not see statements about materials: the libraries are read below.
+    let parsed = tobj::load_obj_buf(&mut input, &options, |_| Ok(Default::default()));
+    if let Some(error) = input.error.take() {
+        return Err(error);
+    }
+    let models = match parsed {
+        Ok((models, _)) => models,
+        Err(e) => {
+            let unknown = || SceneError::unusable(path, format!("{e}; export the model again"));
+            return Err(input.beyond.take().unwrap_or_else(unknown));
+        }
+    };
+    if input.curves {
         log::warn!("{}: curves and surfaces are left out; export them as polygons", path.display());
     }
-    let entries = libraries(path, &parsed);
+    let entries = libraries(path, &input);
     let mut textures = TextureSet::default();
     let mut materials = Vec::new();
     let mut wanted = Vec::new();
-    for name in &parsed.materials {
+    for name in &input.materials.names {
         let entry = entries.get(name.as_str());
         if entry.is_none() && !name.is_empty() {
             log::warn!("{}: the material {name} is not defined; a default takes its place", path.display());
@@ -58,10 +75,25 @@ pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
     for (material, wanted) in materials.iter_mut().zip(&wanted) {
         wanted.apply(material, &built);
     }
-    let has_colors = !parsed.colors.is_empty();
-    let painted: Vec<bool> = materials.iter().map(|m| has_colors && m.diffuse_map.is_none()).collect();
-    let placed = |part: &Part| parsed.mesh(part, wanted[part.material].placement, painted[part.material]);
-    let meshes = parsed.parts.iter().map(placed).collect();
+    let coloured = input.coloured;
+    let painted: Vec<bool> = materials.iter().map(|m| coloured && m.diffuse_map.is_none()).collect();
+    let mut tangled = 0;
+    let meshes = models
+        .into_iter()
+        .filter_map(|model| {
+            // The name is the index of the part.
+            let part = model.name.parse::<usize>().ok().and_then(|i| input.parts.get(i))?;
+            let name = input.names.names[part.name].clone();
+            let placement = wanted[part.material].placement;
+            Some(raw_mesh(model.mesh, part, name, placement, painted[part.material], &mut tangled))
+        })
+        .collect();
+    if tangled > 0 {
+        log::warn!(
+            "{}: {tangled} faces cross themselves hundreds of times and are left out; export them as triangles",
+            path.display()
+        );
+    }
     if painted.contains(&true) {
         for material in materials.iter_mut().zip(&painted).filter_map(|(m, p)| p.then_some(m)) {
             material.diffuse = Vec3::ONE;
@@ -69,8 +101,8 @@ pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
         }
         built.images.push(palette());
     }
-    let subtracted = parsed.subtracted.unwrap_or_default();
-    drop(parsed);
+    let subtracted = input.subtracted.unwrap_or_default();
+    drop(input);
     let (mut model, _) = assemble(path, meshes, materials)?;
     model.textures = built.images;
     Ok((model, subtracted))
@@ -78,10 +110,10 @@ pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
 
 /// Reads the libraries that an OBJ file names, or else the one with its own name. First definitions count. Returns the
 /// materials by their names, with the folders of their libraries.
-fn libraries(path: &Path, parsed: &Parser) -> HashMap<String, (MtlEntry, PathBuf)> {
+fn libraries(path: &Path, input: &Normalizer<impl BufRead>) -> HashMap<String, (MtlEntry, PathBuf)> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files: Vec<PathBuf> = Vec::new();
-    for statement in &parsed.libraries {
+    for statement in &input.libraries {
         // A statement may contain several names, and names may contain blanks.
         let found: Vec<PathBuf> = match find_file(folder, statement.trim_matches('"')) {
             Some(file) => vec![file],
@@ -92,7 +124,7 @@ fn libraries(path: &Path, parsed: &Parser) -> HashMap<String, (MtlEntry, PathBuf
         }
         files.extend(found);
     }
-    if files.is_empty() && parsed.materials.iter().any(|n| !n.is_empty()) {
+    if files.is_empty() && input.materials.names.iter().any(|n| !n.is_empty()) {
         files.extend(
             path.with_extension("mtl").file_name().and_then(|n| find_file(folder, &n.to_string_lossy())),
         );
@@ -178,304 +210,414 @@ impl Wanted {
     }
 }
 
-/// Faces that share a name, a material and their smoothing.
-struct Part {
+/// Returns a mesh cut into triangles, and counts the faces that cannot be.
+fn raw_mesh(
+    mesh: tobj::Mesh,
+    part: &PartKey,
     name: String,
-    /// Index into [`Parser::materials`].
-    material: usize,
-    flat: bool,
-    /// The number of corners of each face.
-    arities: Vec<u32>,
-    corners: Vec<Corner>,
+    placement: Option<(Vec2, Vec2)>,
+    painted: bool,
+    tangled: &mut usize,
+) -> RawMesh {
+    let triple = |v: &[f32], i: usize| Vec3::new(v[i * 3], v[i * 3 + 1], v[i * 3 + 2]);
+    let (scale, offset) = placement.unwrap_or((Vec2::ONE, Vec2::ZERO));
+    let mut vertices: Vec<Vertex> = (0..mesh.positions.len() / 3)
+        .map(|i| Vertex {
+            position: triple(&mesh.positions, i),
+            normal: triple(&mesh.normals, i),
+            uv: Vec2::new(mesh.texcoords[i * 2], mesh.texcoords[i * 2 + 1]) * scale + offset,
+        })
+        .collect();
+    let mut indices = mesh.indices;
+    if !mesh.face_arities.is_empty() {
+        let polygons = std::mem::take(&mut indices);
+        let mut at = 0;
+        let mut points = Vec::new();
+        let mut triangulator = Triangulator::default();
+        for arity in mesh.face_arities {
+            let corners = &polygons[at..at + arity as usize];
+            at += arity as usize;
+            points.clear();
+            points.extend(corners.iter().map(|&i| vertices[i as usize].position));
+            let triangles = triangulator.triangulate(&points);
+            *tangled += usize::from(arity > 2 && triangles.is_empty());
+            indices.extend(triangles.iter().map(|&k| corners[k as usize]));
+        }
+    }
+    if painted {
+        let color = |i: u32| triple(&mesh.vertex_color, i as usize);
+        paint(&mut vertices, &mut indices, |corners| corners.into_iter().map(color).sum::<Vec3>() / 3.0);
+    }
+    RawMesh { name, material: part.material, vertices, indices, flat: part.flat, ..RawMesh::default() }
 }
 
-/// Indices of a corner's position, texture coordinates and normal; [`MISSING`] for what it lacks.
-type Corner = [u32; 3];
+/// Numbers names in the order of first use.
+#[derive(Default)]
+struct Names {
+    names: Vec<String>,
+    known: HashMap<String, usize>,
+}
 
-const MISSING: u32 = u32::MAX;
+impl Names {
+    fn number(&mut self, name: &str) -> usize {
+        if let Some(&i) = self.known.get(name) {
+            return i;
+        }
+        self.names.push(name.to_owned());
+        self.known.insert(name.to_owned(), self.names.len() - 1);
+        self.names.len() - 1
+    }
+}
 
-/// The names of what a [`Corner`] has, for messages.
-const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+/// The properties that all faces of one tobj model share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PartKey {
+    name: usize,
+    material: usize,
+    flat: bool,
+}
 
-/// The contents of an OBJ file, and the state that its statements set for the faces that follow.
-struct Parser<'a> {
-    path: &'a Path,
+/// Reads an OBJ file and outputs it in a form that tobj reads unambiguously: one statement per line; only `v`, `vt`,
+/// `vn`, `f` and `g`; every corner with all three indices, absolute and within the file. The first `vt` and `vn` are
+/// NaN, and stand for missing ones. `g` carries the index of an entry of [`Normalizer::parts`].
+struct Normalizer<R> {
+    path: PathBuf,
+    input: R,
     line: usize,
-    positions: Vec<Vec3>,
-    /// A colour of each position; empty unless the first vertex has one.
-    colors: Vec<Vec3>,
-    texture_coordinates: Vec<Vec2>,
-    normals: Vec<Vec3>,
+    /// The statement as read, and the output, which is consumed up to `given`.
+    statement: Vec<u8>,
+    out: Vec<u8>,
+    given: usize,
+    /// Number of `v`, `vt` and `vn` so far.
+    counts: [usize; 3],
     corners: usize,
-    /// What is subtracted from all positions before they are rounded to f32: a place near the first vertex if that is
-    /// far from the origin.
+    /// True if the first vertex had a colour; then all of them get one.
+    coloured: bool,
+    /// What is subtracted from all vertices, which tobj reads as f32: a place near the first vertex if that is far from
+    /// the origin.
     subtracted: Option<DVec3>,
-    parts: Vec<Part>,
-    /// The names of the materials, in the order of their first use.
-    materials: Vec<String>,
-    material_of: HashMap<String, usize>,
-    libraries: Vec<String>,
-    has_curves: bool,
     name: String,
     material: String,
     flat: bool,
-    /// The highest index of each kind that a face named before the file had it, and the error if it never does.
-    furthest: [(usize, Option<SceneError>); 3],
+    /// True if a name, material or smoothing group was stated since the last face.
+    restated: bool,
+    faces_in_part: usize,
+    names: Names,
+    materials: Names,
+    parts: Vec<PartKey>,
+    libraries: Vec<String>,
+    curves: bool,
+    error: Option<SceneError>,
+    /// The first face that refers to a later vertex. This is valid only if the vertex comes before the faces of the
+    /// next group.
+    beyond: Option<SceneError>,
 }
 
-impl<'a> Parser<'a> {
-    fn new(path: &'a Path) -> Parser<'a> {
-        Parser {
-            path,
+impl<R: BufRead> Normalizer<R> {
+    fn new(path: &Path, input: R) -> Normalizer<R> {
+        Normalizer {
+            path: path.into(),
+            input,
             line: 0,
-            positions: Vec::new(),
-            colors: Vec::new(),
-            texture_coordinates: Vec::new(),
-            normals: Vec::new(),
+            statement: Vec::new(),
+            out: b"vt nan nan\nvn nan nan nan\n".to_vec(),
+            given: 0,
+            counts: [0; 3],
             corners: 0,
+            coloured: false,
             subtracted: None,
-            parts: Vec::new(),
-            materials: Vec::new(),
-            material_of: HashMap::new(),
-            libraries: Vec::new(),
-            has_curves: false,
             name: "model".into(),
             material: String::new(),
             flat: false,
-            furthest: Default::default(),
+            restated: true,
+            faces_in_part: 0,
+            names: Names::default(),
+            materials: Names::default(),
+            parts: Vec::new(),
+            libraries: Vec::new(),
+            curves: false,
+            error: None,
+            beyond: None,
         }
-    }
-
-    /// Reads a file to its end.
-    fn read(mut self, mut input: impl BufRead) -> Result<Parser<'a>, SceneError> {
-        let mut statement = Vec::new();
-        while self.next_statement(&mut input, &mut statement)? {
-            let text = String::from_utf8_lossy(&statement);
-            // Old Macintosh files end lines with CR alone.
-            for line in text.trim_start_matches('\u{feff}').split('\r') {
-                self.statement(mtl::without_comment(line).trim())?;
-            }
-        }
-        let counts = self.counts();
-        for ((index, error), count) in std::mem::take(&mut self.furthest).into_iter().zip(counts) {
-            if let Some(error) = error.filter(|_| index > count) {
-                return Err(error);
-            }
-        }
-        Ok(self)
     }
 
     fn fault(&self, what: impl Into<String>) -> SceneError {
-        SceneError::Statement { path: self.path.into(), line: self.line, what: what.into() }
-    }
-
-    fn too_large(&self, what: &'static str) -> SceneError {
-        SceneError::TooLarge { path: self.path.into(), limit: MAX_ELEMENTS, what }
-    }
-
-    fn counts(&self) -> [usize; 3] {
-        [self.positions.len(), self.texture_coordinates.len(), self.normals.len()]
+        SceneError::Statement { path: self.path.clone(), line: self.line, what: what.into() }
     }
 
     /// Reads one statement and joins continued lines. False at the end of the file.
-    fn next_statement(
-        &mut self,
-        input: &mut impl BufRead,
-        statement: &mut Vec<u8>,
-    ) -> Result<bool, SceneError> {
-        statement.clear();
+    fn next_statement(&mut self) -> Result<bool, SceneError> {
+        self.statement.clear();
         loop {
-            let start = statement.len();
-            let read = input.by_ref().take((MAX_STATEMENT - start) as u64).read_until(b'\n', statement);
-            let count = read.map_err(|source| SceneError::Read { path: self.path.into(), source })?;
-            if count == 0 {
-                return Ok(start > 0);
+            let start = self.statement.len();
+            let room = (MAX_STATEMENT - start) as u64;
+            let read = self.input.by_ref().take(room).read_until(b'\n', &mut self.statement);
+            let n = read.map_err(|source| SceneError::Read { path: self.path.clone(), source })?;
+            if n == 0 && start == 0 {
+                return Ok(false);
             }
             self.line += 1;
-            if statement.len() >= MAX_STATEMENT || statement[start..].contains(&0) {
-                return Err(self.fault("the line is too long or binary; save the model as OBJ text in UTF-8"));
+            if self.statement.len() >= MAX_STATEMENT {
+                return Err(self.fault("the line is too long for a model; is this an OBJ file?"));
             }
-            let length = statement.trim_ascii_end().len();
-            if length > start && statement[length - 1] == b'\\' {
-                statement.truncate(length - 1);
-                statement.push(b' ');
+            if self.statement[start..].contains(&0) {
+                return Err(self.fault(
+                    "there are zero bytes, so this is a binary or UTF-16 file; save it as OBJ text in UTF-8",
+                ));
+            }
+            while self.statement.last().is_some_and(|b| b.is_ascii_whitespace())
+                && self.statement.len() > start
+            {
+                self.statement.pop();
+            }
+            if n > 0 && self.statement.len() > start && self.statement.last() == Some(&b'\\') {
+                self.statement.pop();
+                self.statement.push(b' ');
             } else {
                 return Ok(true);
             }
         }
     }
 
-    fn statement(&mut self, text: &str) -> Result<(), SceneError> {
+    /// Translates the statement into `out`, which stays empty if tobj need not see it.
+    fn translate(&mut self) -> Result<(), SceneError> {
+        let taken = std::mem::take(&mut self.statement);
+        let text = String::from_utf8_lossy(&taken);
+        let text = if self.line == 1 { text.trim_start_matches('\u{feff}') } else { &text };
+        // Old Macintosh files end lines with CR alone.
+        let result =
+            text.split('\r').try_for_each(|line| self.translate_line(mtl::without_comment(line).trim()));
+        self.statement = taken;
+        result
+    }
+
+    fn translate_line(&mut self, text: &str) -> Result<(), SceneError> {
         let (keyword, rest) = text.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((text, ""));
-        let rest = rest.trim();
         match keyword {
-            "v" => self.vertex(rest)?,
-            "vt" => {
-                let (numbers, count) = self.numbers::<2>(keyword, rest, 1)?;
-                let [u, v] = numbers.map(|x| x as f32);
-                self.texture_coordinates.push(Vec2::new(u, if count < 2 { 0.0 } else { v }));
+            "v" | "vt" | "vn" => return self.vector(keyword, rest),
+            "f" | "fo" => return self.face(rest),
+            "o" | "g" => {
+                let name = rest.trim();
+                self.name = if name.is_empty() { "model".into() } else { name.into() };
+                self.restated = true;
             }
-            "vn" => {
-                let (numbers, _) = self.numbers::<3>(keyword, rest, 3)?;
-                self.normals.push(DVec3::from(numbers).as_vec3());
+            "usemtl" => {
+                self.material = rest.trim().into();
+                self.restated = true;
             }
-            "f" | "fo" => self.face(rest)?,
-            "o" | "g" => self.name = if rest.is_empty() { "model".into() } else { rest.into() },
-            "usemtl" => self.material = rest.into(),
-            "s" => self.flat = matches!(rest, "off" | "0"),
-            "mtllib" if !rest.is_empty() && !self.libraries.iter().any(|l| l == rest) => {
-                self.libraries.push(rest.into());
+            "s" => {
+                self.flat = matches!(rest.trim(), "off" | "0");
+                self.restated = true;
             }
-            "curv" | "curv2" | "surf" => self.has_curves = true,
+            "mtllib" if !rest.trim().is_empty() => {
+                let library = rest.trim().to_owned();
+                if !self.libraries.contains(&library) && self.libraries.len() < 1000 {
+                    self.libraries.push(library);
+                }
+            }
+            "curv" | "curv2" | "surf" => self.curves = true,
             _ => {}
         }
         Ok(())
     }
 
-    /// Returns up to N numbers and their count, at least `needed`.
-    fn numbers<const N: usize>(
-        &self,
-        keyword: &str,
-        rest: &str,
-        needed: usize,
-    ) -> Result<([f64; N], usize), SceneError> {
-        let (mut numbers, mut count) = ([f64::NAN; N], 0);
-        for (number, word) in numbers.iter_mut().zip(rest.split_ascii_whitespace()) {
-            // C libraries write values that are not numbers as `-nan(ind)` or `1.#QNAN`.
-            let is_nan = || word.to_ascii_lowercase().contains("nan") || word.contains("1.#");
-            *number = match word.parse() {
-                Ok(number) => number,
-                Err(_) if is_nan() => f64::NAN,
-                Err(_) => return Err(self.fault(format!("`{}` is not a number", mtl::abridged(word)))),
+    fn vector(&mut self, keyword: &str, rest: &str) -> Result<(), SceneError> {
+        // Passed on as written: formatting the numbers again takes longer than everything else.
+        let mut words = [""; 7];
+        let mut n = 0;
+        for word in rest.split_ascii_whitespace().take(7) {
+            words[n] = match number(word) {
+                Some(x) if x.is_nan() => "nan",
+                Some(_) => word,
+                None => {
+                    let hint = if word.contains(',') { " (decimals need a point)" } else { "" };
+                    return Err(self.fault(format!("`{}` is not a number{hint}", mtl::abridged(word))));
+                }
             };
-            count += 1;
+            n += 1;
         }
-        if count < needed {
-            return Err(self.fault(format!("`{keyword}` needs {needed} numbers and has {count}")));
+        let (kind, needed) = match keyword {
+            "v" => (0, 3),
+            "vt" => (1, 1),
+            _ => (2, 3),
+        };
+        if n < needed {
+            return Err(self.fault(format!("`{keyword}` needs {needed} numbers and has {n}")));
         }
-        if self.counts().into_iter().any(|count| count >= MAX_ELEMENTS) {
-            return Err(self.too_large("vertices"));
+        if kind == 0 && self.counts[0] == 0 {
+            self.coloured = n >= 6;
+            let first = DVec3::from([0, 1, 2].map(|i| words[i].parse().unwrap_or(f64::NAN))).round();
+            self.subtracted = (first.is_finite() && first.length() > FAR).then_some(first);
         }
-        Ok((numbers, count))
-    }
-
-    fn vertex(&mut self, rest: &str) -> Result<(), SceneError> {
-        let ([x, y, z, r, g, b], count) = self.numbers::<6>("v", rest, 3)?;
-        let position = DVec3::new(x, y, z);
-        if self.positions.is_empty() {
-            let place = position.round();
-            self.subtracted = (place.is_finite() && place.length() > FAR).then_some(place);
+        self.counts[kind] += 1;
+        if self.counts[kind] > MAX_ELEMENTS {
+            return Err(SceneError::TooLarge {
+                path: self.path.clone(),
+                limit: MAX_ELEMENTS,
+                what: "vertices",
+            });
         }
-        if count == 6 && self.colors.len() == self.positions.len() {
-            self.colors.push(DVec3::new(r, g, b).as_vec3());
-        } else if !self.colors.is_empty() {
-            self.colors.push(Vec3::ONE);
+        let mut near = [const { String::new() }; 3];
+        if let Some(subtracted) = self.subtracted.filter(|_| kind == 0) {
+            for ((near, word), subtracted) in near.iter_mut().zip(&mut words).zip(subtracted.to_array()) {
+                // What is not a number stays one.
+                *near = (word.parse().unwrap_or(f64::NAN) - subtracted).to_string();
+                *word = near;
+            }
         }
-        self.positions.push((position - self.subtracted.unwrap_or_default()).as_vec3());
-        Ok(())
+        let [a, b, c, colour @ ..] = words;
+        let written = match kind {
+            0 if self.coloured => {
+                let [r, g, b2] = if n >= 6 { [colour[0], colour[1], colour[2]] } else { ["1"; 3] };
+                writeln!(self.out, "v {a} {b} {c} {r} {g} {b2}")
+            }
+            0 => writeln!(self.out, "v {a} {b} {c}"),
+            1 => writeln!(self.out, "vt {a} {}", if n < 2 { "0" } else { b }),
+            _ => writeln!(self.out, "vn {a} {b} {c}"),
+        };
+        written.map_err(|source| SceneError::Read { path: self.path.clone(), source })
     }
 
     fn face(&mut self, rest: &str) -> Result<(), SceneError> {
-        let corners: Vec<Corner> =
-            rest.split_ascii_whitespace().map(|word| self.corner(word)).collect::<Result<_, _>>()?;
-        // Points and lines are dropped.
-        if corners.len() < 3 {
-            return Ok(());
+        if self.restated || self.faces_in_part >= FACES_PER_MODEL {
+            self.begin_part();
         }
-        self.corners += corners.len();
-        if self.corners > MAX_ELEMENTS {
-            return Err(self.too_large("corners of faces"));
-        }
-        let material = match self.material_of.get(&self.material) {
-            Some(&material) => material,
-            None => {
-                self.materials.push(self.material.clone());
-                self.material_of.insert(self.material.clone(), self.materials.len() - 1);
-                self.materials.len() - 1
+        let began = self.out.len();
+        self.out.push(b'f');
+        let mut corners = 0;
+        for word in rest.split_ascii_whitespace() {
+            let mut indices = [0usize, 1, 1];
+            let mut parts = word.split('/');
+            for (kind, slot) in indices.iter_mut().enumerate() {
+                let part = parts.next().unwrap_or("");
+                if let Some(index) = self.index(part, kind, word)? {
+                    // The first vt and vn stand for missing ones, so the file's own come after them.
+                    *slot = if kind == 0 { index } else { index + 1 };
+                }
             }
-        };
-        let goes_on =
-            |part: &Part| part.material == material && part.flat == self.flat && part.name == self.name;
-        if !self.parts.last().is_some_and(goes_on) {
-            let (name, flat) = (self.name.clone(), self.flat);
-            self.parts.push(Part { name, material, flat, arities: Vec::new(), corners: Vec::new() });
+            if parts.next().is_some() || indices[0] == 0 {
+                return Err(self.fault(format!("`{}` is not the corner of a face", mtl::abridged(word))));
+            }
+            let [v, vt, vn] = indices;
+            let written = write!(self.out, " {v}/{vt}/{vn}");
+            written.map_err(|source| SceneError::Read { path: self.path.clone(), source })?;
+            corners += 1;
         }
-        if let Some(part) = self.parts.last_mut() {
-            part.arities.push(corners.len() as u32);
-            part.corners.extend(corners);
+        self.corners += corners;
+        if self.corners > MAX_ELEMENTS {
+            return Err(SceneError::TooLarge {
+                path: self.path.clone(),
+                limit: MAX_ELEMENTS,
+                what: "corners of faces",
+            });
+        }
+        if corners < 3 {
+            // Points and lines are dropped; the part that was begun for them stays open.
+            self.out.truncate(began);
+        } else {
+            self.out.push(b'\n');
+            self.faces_in_part += 1;
         }
         Ok(())
     }
 
-    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. An index may name what comes later in the file.
-    fn corner(&mut self, word: &str) -> Result<Corner, SceneError> {
-        let malformed = |parser: &Self| {
-            parser.fault(format!("`{}` is not the corner of a face", mtl::abridged(word)))
+    fn begin_part(&mut self) {
+        self.restated = false;
+        let key = PartKey {
+            name: self.names.number(&self.name),
+            material: self.materials.number(&self.material),
+            flat: self.flat,
         };
-        let mut corner = [MISSING; 3];
-        let mut texts = word.split('/');
-        for (kind, (slot, count)) in corner.iter_mut().zip(self.counts()).enumerate() {
-            let text = texts.next().unwrap_or("");
-            // Some exporters write 0 for missing indices.
-            if kind > 0 && matches!(text, "" | "0") {
-                continue;
-            }
-            let index: i64 = text.parse().map_err(|_| malformed(self))?;
-            let back = usize::try_from(index.unsigned_abs()).unwrap_or(usize::MAX);
-            let index = if index < 0 { (count + 1).saturating_sub(back) } else { back };
-            let fault = || format!("`{}` names a {} that does not exist", mtl::abridged(word), KINDS[kind]);
-            if index == 0 || index > MAX_ELEMENTS {
-                return Err(self.fault(fault()));
-            }
-            if index > count && index > self.furthest[kind].0 {
-                self.furthest[kind] = (index, Some(self.fault(fault())));
-            }
-            *slot = index as u32 - 1;
+        if self.parts.last() == Some(&key) && self.faces_in_part < FACES_PER_MODEL {
+            return;
         }
-        if texts.next().is_some() { Err(malformed(self)) } else { Ok(corner) }
+        self.faces_in_part = 0;
+        self.out.extend_from_slice(format!("g {}\n", self.parts.len()).as_bytes());
+        self.parts.push(key);
     }
 
-    /// Returns a part cut into triangles, with its texture coordinates scaled and moved.
-    fn mesh(&self, part: &Part, placement: Option<(Vec2, Vec2)>, painted: bool) -> RawMesh {
-        let (scale, offset) = placement.unwrap_or((Vec2::ONE, Vec2::ZERO));
-        let mut known: HashMap<Corner, u32> = HashMap::new();
-        let (mut vertices, mut colors): (Vec<Vertex>, Vec<Vec3>) = Default::default();
-        let mut number = |corner: &Corner| {
-            *known.entry(*corner).or_insert_with(|| {
-                let [position, uv, normal] = corner.map(|index| index as usize);
-                vertices.push(Vertex {
-                    position: self.positions[position],
-                    normal: self.normals.get(normal).copied().unwrap_or(NO_NORMAL),
-                    uv: self.texture_coordinates.get(uv).map_or(NO_UV, |uv| *uv * scale + offset),
-                });
-                colors.extend(self.colors.get(position));
-                vertices.len() as u32 - 1
-            })
-        };
-        let polygons: Vec<u32> = part.corners.iter().map(&mut number).collect();
-        let mut indices = Vec::with_capacity(polygons.len());
-        let mut rest = polygons.as_slice();
-        let mut triangulator = Triangulator::default();
-        let mut points = Vec::new();
-        for &arity in &part.arities {
-            let (face, others) = rest.split_at(arity as usize);
-            rest = others;
-            points.clear();
-            points.extend(face.iter().map(|&i| vertices[i as usize].position));
-            indices.extend(triangulator.triangulate(&points).iter().map(|&k| face[k as usize]));
+    /// Returns an index of a corner, counted from 1; `None` if it is left out.
+    fn index(&mut self, text: &str, kind: usize, corner: &str) -> Result<Option<usize>, SceneError> {
+        let what = ["vertex", "texture coordinate", "normal"][kind];
+        if text.is_empty() {
+            return Ok(None);
         }
-        if painted {
-            let color = |i: u32| colors[i as usize];
-            paint(&mut vertices, &mut indices, |corners| corners.map(color).into_iter().sum::<Vec3>() / 3.0);
+        let corner = || mtl::abridged(corner);
+        let index: i64 =
+            text.parse().map_err(|_| self.fault(format!("`{}` is not the corner of a face", corner())))?;
+        let count = self.counts[kind];
+        match index {
+            // Some exporters write 0 for missing indices.
+            0 if kind > 0 => Ok(None),
+            0 => Err(self.fault(format!("`{}` names {what} 0, but they are counted from 1", corner()))),
+            i if i < 0 => match usize::try_from(i.unsigned_abs()).ok().filter(|&back| back <= count) {
+                Some(back) => Ok(Some(count - back + 1)),
+                None => Err(self.fault(format!(
+                    "`{}` refers {} back, but there are only {count} before",
+                    corner(),
+                    i.unsigned_abs()
+                ))),
+            },
+            i => {
+                let fault = |s: &Self| {
+                    s.fault(format!("`{}` names {what} {i}, but there are only {count}", corner()))
+                };
+                let i = usize::try_from(i).unwrap_or(usize::MAX);
+                if i > MAX_ELEMENTS {
+                    return Err(fault(self));
+                }
+                if i > count && self.beyond.is_none() {
+                    self.beyond = Some(fault(self));
+                }
+                Ok(Some(i))
+            }
         }
-        let Part { name, material, flat, .. } = part;
-        RawMesh {
-            name: name.clone(),
-            material: *material,
-            vertices,
-            indices,
-            flat: *flat,
-            ..RawMesh::default()
+    }
+}
+
+/// Returns a number. Accepts the spellings of C libraries for values that are not numbers.
+fn number(word: &str) -> Option<f32> {
+    let none = || {
+        let w = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
+        (w.starts_with("nan") || w.starts_with("1.#") || w.starts_with("inf")).then_some(f32::NAN)
+    };
+    word.parse().ok().or_else(none)
+}
+
+impl<R: BufRead> BufRead for Normalizer<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.given >= self.out.len() {
+            self.out.clear();
+            self.given = 0;
+            // Many statements at once, because tobj asks line by line.
+            while self.out.len() < 1 << 16 {
+                match self
+                    .next_statement()
+                    .and_then(|more| if more { self.translate().map(|()| true) } else { Ok(false) })
+                {
+                    Ok(true) => {}
+                    Ok(false) => break,
+                    Err(error) => {
+                        self.error = Some(error);
+                        return Err(io::ErrorKind::InvalidData.into());
+                    }
+                }
+            }
         }
+        Ok(&self.out[self.given..])
+    }
+
+    fn consume(&mut self, amount: usize) {
+        self.given += amount;
+    }
+}
+
+impl<R: BufRead> Read for Normalizer<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let available = self.fill_buf()?;
+        let n = available.len().min(buffer.len());
+        buffer[..n].copy_from_slice(&available[..n]);
+        self.consume(n);
+        Ok(n)
     }
 }

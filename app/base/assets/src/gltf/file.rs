@@ -34,11 +34,16 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Document, Option<Vec<u
     let unusable = |what: String| SceneError::unusable(path, what);
     let invalid =
         |what: String| unusable(format!("this is not valid glTF 2.0 ({what}); export the model again"));
+    let first =
+        || unusable("this is glTF 1.0, and only 2.0 can be read: export the model again as glTF 2.0".into());
     let (text, blob) = if bytes.starts_with(b"glTF") {
         let number = |at: usize| {
             let bytes = bytes.get(at..at + 4)?;
             Some(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
         };
+        if number(4) == Some(1) {
+            return Err(first());
+        }
         // The crate subtracts the header's size from this length unchecked.
         if number(8).is_none_or(|length| length < 20) {
             return Err(unusable("the binary header is cut off; export the model again".into()));
@@ -50,6 +55,12 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Document, Option<Vec<u
     };
     let mut root: Value = serde_json::from_slice(&text).map_err(|e| invalid(e.to_string()))?;
     drop(text);
+    let version =
+        root.pointer("/asset/version").map(|v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
+    // Version 1.0 has maps where 2.0 has lists.
+    if version.is_some_and(|v| v == "1" || v.starts_with("1.")) || root["meshes"].is_object() {
+        return Err(first());
+    }
     complete(&mut root);
     let root = serde_json::from_value(root).map_err(|e| invalid(e.to_string()))?;
     Ok((Document::from_json_without_validation(root), blob))
@@ -85,6 +96,10 @@ const KNOWN: [&str; 10] = [
     "KHR_xmp_json_ld",
 ];
 
+/// The extensions that compress geometry.
+const COMPRESSION: [&str; 3] =
+    ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+
 /// Refuses extensions without which a file cannot be read, and warns about those that are left out. Must run first:
 /// what such an extension leaves out may look like a mistake.
 pub(super) fn check_extensions(path: &Path, document: &Document) -> Result<(), SceneError> {
@@ -99,11 +114,17 @@ pub(super) fn check_extensions(path: &Path, document: &Document) -> Result<(), S
         ));
     }
     let mut left_out: Vec<&str> = root.extensions_used.iter().map(String::as_str).collect();
-    left_out.retain(|e| !KNOWN.contains(e));
+    left_out.retain(|e| !KNOWN.contains(e) && !COMPRESSION.contains(e));
     if !left_out.is_empty() {
         log::warn!("{}: what these extensions add is left out: {}", path.display(), left_out.join(", "));
     }
     Ok(())
+}
+
+/// Returns the extension that compresses a file's geometry, if it uses one.
+pub(super) fn compression(document: &Document) -> Option<&'static str> {
+    let used = &document.as_json().extensions_used;
+    COMPRESSION.into_iter().find(|e| used.iter().any(|used| used == e))
 }
 
 /// Runs the crate's validation, except for extensions, and checks what it relies on without checking it.

@@ -20,7 +20,7 @@ use gltf::Document;
 use gltf::json::extensions::scene::khr_lights_punctual as khr_lights;
 use gltf::json::validation::Checked;
 
-use self::file::{buffers, check, check_extensions, parse, read_file};
+use self::file::{buffers, check, check_extensions, compression, parse, read_file};
 use self::material::MaterialTextures;
 use self::motion::{Carried, Standing, place_carried};
 use self::primitive::transform;
@@ -106,7 +106,16 @@ pub(crate) fn load_gltf(path: &Path, animation: Option<&str>) -> Result<GltfScen
     if !meshes.iter().any(|m| m.material == materials.len() - 1) {
         materials.pop();
     }
-    let (mut model, placed) = assemble(path, meshes, materials)?;
+    let (mut model, placed) =
+        assemble(path, meshes, materials).map_err(|error| match (error, compression(&document)) {
+            (SceneError::Empty { path }, Some(e)) => SceneError::unusable(
+                &path,
+                format!(
+                    "its triangles are compressed by {e}, which is not supported: export the model without it"
+                ),
+            ),
+            (error, _) => error,
+        })?;
     model.textures = built.images;
     place_carried(&carried, placed, &mut motion, &mut model);
     motion.sun = sun.and_then(|(_, _, mover)| mover);
