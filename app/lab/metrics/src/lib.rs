@@ -1,4 +1,4 @@
-//! Similarity of two images.
+//! Similarity of two images, and a stand-in for the [frames between renders](SubmittedEye) that a headset's runtime makes.
 //!
 //! All figures are computed in f64 from display-referred 8-bit values, with a data range of 255. PSNR and SSIM agree
 //! with scikit-image's `peak_signal_noise_ratio` and `structural_similarity`, FLIP with its authors' program.
@@ -6,6 +6,7 @@
 mod error_map;
 mod flicker;
 mod flip;
+mod frame_synthesis;
 mod input;
 mod psnr;
 mod ssim;
@@ -13,6 +14,7 @@ mod ssim;
 pub use error_map::{error_color, error_map};
 pub use flicker::{Flicker, FlickerMeter};
 pub use flip::{FLIP_PIXELS_PER_DEGREE, flip, flip_map};
+pub use frame_synthesis::{EyeCamera, EyePose, SubmittedEye};
 use input::check_mask;
 pub use input::{Channels, MetricsError};
 pub use psnr::{Psnr, psnr, psnr_where};

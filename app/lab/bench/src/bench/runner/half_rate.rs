@@ -4,9 +4,9 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use anyhow::ensure;
+use glam::Vec3;
 use image::RgbImage;
 
-use super::emulated_runtime::Submitted;
 use super::foveation::Way;
 use super::reprojection::{SPREAD, measurement_of};
 use super::{Runner, milliseconds};
@@ -15,10 +15,12 @@ use crate::bench::motion::Motion;
 use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::{HEADSET_RATE, Views};
-use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, View};
+use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, Pose, View};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
-use yoro_metrics::{Channels, SsimWindow, psnr, psnr_where, ssim};
+use yoro_metrics::{
+    Channels, EyeCamera, EyePose, SsimWindow, SubmittedEye, psnr, psnr_where, ssim,
+};
 use yoro_render::stereo::{EyeTarget, FramesBetween, Method, MotionTarget, StereoFrame};
 use yoro_render::{DepthImage, DepthReader, PreparedScene};
 
@@ -193,19 +195,20 @@ impl Ways {
             method.render(prepared, &now, &to)?;
             ensure!(method.has_motion(), "{way} has no motion vectors");
             let read = self.read(eye, now.depth.convention)?;
-            let former = View { size: now.size, ..then.view(eye) };
-            let submitted = Submitted {
+            let vectors: Vec<Vec3> = read.vectors.iter().map(|v| Vec3::from_slice(v)).collect();
+            let submitted = SubmittedEye {
                 rgba: &read.rgba,
-                vectors: &read.vectors,
+                size: now.size,
+                vectors: &vectors,
                 depth: &read.depth,
                 vector_size: read.size,
-                now: now.view(eye),
-                former,
+                camera: camera(&now.view(eye)),
+                previous: camera(&then.view(eye)),
             };
-            let pose = newest.poses[eye.index()];
+            let pose = eye_pose(newest.poses[eye.index()]);
             shown.push((way, image(&submitted.extrapolate(pose, 0.5))));
             if way == ONE_EYE {
-                let submitted = Submitted { rgba: &true_color, ..submitted };
+                let submitted = SubmittedEye { rgba: &true_color, ..submitted };
                 shown.push((VECTORS, image(&submitted.extrapolate(pose, 0.5))));
             } else {
                 shown.push((ROTATION, image(&submitted.rotate(pose))));
@@ -271,6 +274,20 @@ impl Ways {
             }
         }
         Ok(all)
+    }
+}
+
+fn eye_pose(Pose { position, orientation }: Pose) -> EyePose {
+    EyePose { position, orientation }
+}
+
+fn camera(view: &View) -> EyeCamera {
+    let f = &view.frustum;
+    let (at_0, slope) = view.depth.inverse_distance_law();
+    EyeCamera {
+        pose: eye_pose(view.pose),
+        tangents: [f.left, f.right, f.bottom, f.top],
+        inverse_distances: [at_0, at_0 + slope],
     }
 }
 

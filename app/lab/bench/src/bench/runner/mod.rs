@@ -1,6 +1,5 @@
 //! Measures jobs round by round.
 
-mod emulated_runtime;
 mod foveation;
 mod frames;
 mod half_rate;
