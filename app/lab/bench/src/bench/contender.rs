@@ -32,20 +32,17 @@ pub enum Band {
     OneMetre,
     /// Complete from half a metre.
     HalfMetre,
-    /// [`GuardBand::AUTO`].
-    Auto,
 }
 
 impl Band {
     /// All guard bands.
-    pub const ALL: [Band; 4] = [Band::None, Band::OneMetre, Band::HalfMetre, Band::Auto];
+    pub const ALL: [Band; 3] = [Band::None, Band::OneMetre, Band::HalfMetre];
 
     fn name(self) -> &'static str {
         match self {
             Band::None => "none",
             Band::OneMetre => "1",
             Band::HalfMetre => "0.5",
-            Band::Auto => "auto",
         }
     }
 
@@ -55,7 +52,6 @@ impl Band {
             Band::None => GuardBand::None,
             Band::OneMetre => GuardBand::Distance(1.0),
             Band::HalfMetre => GuardBand::Distance(0.5),
-            Band::Auto => GuardBand::AUTO,
         }
     }
 }
@@ -65,6 +61,9 @@ impl Contender {
     pub const CONVENTIONAL: Contender = Contender::Method(Method::Conventional);
     /// The baseline for quality: the same image for both eyes.
     pub const MONO: Contender = Contender::Method(Method::Mono);
+
+    /// Both of these, beside which all others are shown.
+    pub const BASELINES: [Contender; 2] = [Contender::CONVENTIONAL, Contender::MONO];
 
     /// Returns every contender in the order of tables.
     pub fn all() -> Vec<Contender> {
@@ -87,6 +86,11 @@ impl Contender {
     /// Returns synthesis with each of its pipelines.
     pub fn pipelines() -> Vec<Contender> {
         Pipeline::ALL.map(Contender::Synthesized).to_vec()
+    }
+
+    /// Returns the same after the baseline for quality.
+    pub fn synthesis() -> Vec<Contender> {
+        [vec![Contender::MONO], Contender::pipelines()].concat()
     }
 
     /// Returns the patchers.

@@ -1,8 +1,6 @@
 //! Names of the metrics, with units. Quality is that of the eye that is not dominant, compared with a real render of
 //! the same eye (`conventional`); images are 8 bits, display-referred.
 
-pub use yoro_estimate::metric::*;
-
 /// Wall-clock time of a whole stereo frame up to glFinish, in ms.
 pub const FRAME_MS: &str = "frame_ms";
 /// CPU time of all threads of the process during that frame, in ms.
@@ -74,10 +72,6 @@ pub const FLICKERS: [&str; 4] = [FLICKER, FLICKER_HOLES, FLICKER_EDGES, FLICKER_
 /// The corresponding metrics of the ground truth, measured for `conventional`.
 pub const CHANGES: [&str; 4] = [CHANGE, CHANGE_HOLES, CHANGE_EDGES, CHANGE_REST];
 
-/// Number of columns of the guard band that were drawn in a frame.
-pub const GUARD_COLUMNS: &str = "guard_columns";
-/// Number of pixels in the guard band that were visible in a frame but not drawn.
-pub const UNDRAWN: &str = "undrawn";
 /// PSNR (RGB) in dB in the columns at the other eye's outer border that a guard band serves.
 pub const BORDER_PSNR: &str = "border_psnr";
 

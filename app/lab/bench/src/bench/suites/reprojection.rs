@@ -1,26 +1,23 @@
 //! One render shown at another pose: after the head has moved, and for canted eyes.
 
 use std::rc::Rc;
-use std::time::{Duration, Instant};
 
-use anyhow::ensure;
 use glam::Quat;
 use image::RgbImage;
 
-use super::{Runner, milliseconds};
-use crate::bench::job::{Displaced, Job};
-use crate::bench::picture_folder;
-use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::views::Views;
+use super::super::Experiment;
+use super::super::job::{Choices, Job, QUICK_SCENES, VARIED_SCENES};
+use super::super::record::metric;
+use super::super::runner::{Round, Runner};
+use super::super::scenes::LazyObject;
+use super::super::views::{Motion, SPREAD};
 use yoro::eyes::{Eye, EyePair, GuardBand, HeadMotion, PoseWarp, View};
 use yoro::opengl::{AnyView, Gather, Options, Outputs, Source};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
-use yoro_render::stereo::{self, FramesBetween, Method, StereoFrame, StereoMethod, StereoOptions};
 use yoro_render::{PreparedScene, ViewTargets};
 
-/// Names of the ways of showing a render at another pose.
 const SAME_IMAGE: &str = "same-image";
 const ROTATION: &str = "rotation";
 const ANY_VIEW: &str = "any-view";
@@ -31,81 +28,93 @@ const PARALLEL_EYES: &str = "gather-parallel-eyes";
 const NEAREST: f32 = 0.5;
 /// The angle in degrees by which each canted eye is turned outwards.
 const CANT_DEGREES: f32 = 5.0;
+/// The largest delay in frames.
+const MAX_LATE: usize = 4;
 
-/// Names of what is timed: two renders and, with half the rate of renders, the rendered frames and those in between.
-const TIMED: [&str; 3] = ["conventional", "rendered", "shown-again"];
+/// The pose at which a render is shown.
+#[derive(Clone, Copy)]
+enum TargetPose {
+    /// The pose of the same eye this number of frames later, at 72 frames per second.
+    Late { motion: Motion, frames: usize },
+    /// The pose of the other of two canted eyes.
+    Canted,
+}
 
-/// The pictures of each way, by its name.
-type Shown = Vec<(&'static str, RgbImage)>;
+/// Canted eyes, then two motions of the head by delay.
+const POSES: [TargetPose; 1 + 2 * MAX_LATE] = {
+    let mut poses = [TargetPose::Canted; 1 + 2 * MAX_LATE];
+    let mut frames = 1;
+    while frames <= MAX_LATE {
+        poses[frames] = TargetPose::Late { motion: Motion::Sway, frames };
+        poses[MAX_LATE + frames] = TargetPose::Late { motion: Motion::Walk, frames };
+        frames += 1;
+    }
+    poses
+};
 
-impl Runner<'_> {
+/// One render shown at another pose: after the head has moved, and for canted eyes.
+pub struct Reprojection;
+
+impl Experiment for Reprojection {
+    fn name(&self) -> &'static str {
+        "reprojection"
+    }
+
+    fn about(&self) -> &'static str {
+        "Quality of one render shown at a later pose of the head, and of canted eyes"
+    }
+
+    fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {
+        let scenes = if choices.quick { &QUICK_SCENES[..] } else { &VARIED_SCENES };
+        Ok(choices.sweep(self, choices.scenes(scenes.iter().copied()), POSES, |job, pose| {
+            job.conditions.label = Some(match pose {
+                TargetPose::Canted => "canted eyes".to_owned(),
+                TargetPose::Late { motion, frames } => format!("{}, {frames} late", motion.name()),
+            });
+        }))
+    }
+
+    fn steps(&self, job: &Job) -> u64 {
+        job.frames as u64
+    }
+
     /// Measures the frames of the job, each against a real render at the pose where it is shown.
-    pub(super) fn reprojection(
-        &mut self,
-        job: &Job,
-        displaced: Displaced,
-        prepared: &mut PreparedScene,
-    ) -> anyhow::Result<()> {
-        self.bar.set_message(job.conditions.to_string());
-        let mut reprojector = Reprojector::new(self.gl)?;
-        let mut timer = Timer::new(self.gl, job)?;
-        let (views, late) = match displaced {
-            Displaced::Late(motion, late) => {
-                // The frames are spread over the motion, so that neighbours are not alike.
-                let all = Job { frames: job.frames * SPREAD + late, ..job.clone() };
-                (Views::of_motion(&all, prepared, motion)?, Some(late))
+    fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
+        runner.announce(job, 0);
+        let mut reprojector = Reprojector::new(runner.gl)?;
+        let pose = POSES[job.point];
+        let views = match pose {
+            // The frames are spread over the motion, so that neighbours are not alike.
+            TargetPose::Late { motion, frames } => {
+                runner.moving(job, scene, motion, job.frames * SPREAD + frames)?
             }
-            Displaced::Canted => (Views::spread(job, prepared)?, None),
+            TargetPose::Canted => runner.viewpoints(job, scene)?,
         };
-        let mut measurements: Vec<Measurement> = Vec::new();
+        let mut round = Round::of_views(job, 0, &views, scene);
         for i in 0..job.frames.min(views.pairs.len()) {
             interrupt::check()?;
-            let (shown, truth) = match late {
-                Some(late) => {
-                    let [then, now] = [0, late].map(|n| views.pairs[i * SPREAD + n]);
-                    reprojector.late(prepared, &then, &now)?
+            let Shown { images, truth } = match pose {
+                TargetPose::Late { frames, .. } => {
+                    let [then, now] = [0, frames].map(|n| views.pairs[i * SPREAD + n]);
+                    reprojector.late(scene, &then, &now)?
                 }
-                None => reprojector.canted(prepared, &canted(&views.pairs[i]))?,
+                TargetPose::Canted => reprojector.canted(scene, &canted(&views.pairs[i]))?,
             };
             if i == 0 {
-                let folder = picture_folder(&self.before.path, &job.conditions);
-                for (name, image) in shown.iter().map(|(way, image)| (*way, image)).chain([("truth", &truth)])
-                {
-                    yoro_media::save_color(&folder.join(format!("{name}.png")), image)?;
+                for (name, image) in images.iter().map(|(name, image)| (*name, image)).chain([("truth", &truth)]) {
+                    runner.save_picture(job, name, image)?;
                 }
             }
-            for (way, image) in shown {
-                let measurement = measurement_of(&mut measurements, job, way);
+            for (name, image) in images {
+                let measurement = round.of(name);
                 measurement.push(metric::PSNR, psnr(&image, &truth, Channels::Rgb)?.0);
                 measurement.push(metric::SSIM, ssim(&image, &truth, SsimWindow::Gaussian11, Channels::Rgb)?);
             }
-            if late == Some(1) {
-                let [then, now] = [0, 1].map(|n| views.pairs[i * SPREAD + n]);
-                for (name, time) in TIMED.iter().zip(timer.run(prepared, &then, &now)?) {
-                    measurement_of(&mut measurements, job, name).push(metric::FRAME_MS, milliseconds(time));
-                }
-            }
-            self.bar.inc(1);
+            runner.bar.inc(1);
         }
-        self.finish_round(job, 0, vec![Record::Scene(views.facts(job, prepared))], measurements)
+        runner.finish(round)
     }
 }
-
-/// Returns the measurement of a contender, and creates it if there is none yet.
-pub(super) fn measurement_of<'a>(
-    all: &'a mut Vec<Measurement>,
-    job: &Job,
-    name: &str,
-) -> &'a mut Measurement {
-    let at = all.iter().position(|m| m.contender == name).unwrap_or_else(|| {
-        all.push(Measurement::new(&job.conditions, name, 0));
-        all.len() - 1
-    });
-    &mut all[at]
-}
-
-/// The number of frames from one measured frame to the next.
-pub(super) const SPREAD: usize = 9;
 
 /// Returns the same eyes, turned outwards.
 fn canted(pair: &EyePair) -> EyePair {
@@ -116,56 +125,10 @@ fn canted(pair: &EyePair) -> EyePair {
     eyes
 }
 
-/// Times whole stereo frames.
-struct Timer {
-    gl: Rc<Context>,
-    /// Two renders, and one render that is shown in several frames.
-    methods: [Box<dyn StereoMethod>; 2],
-    frame: StereoFrame,
-}
-
-impl Timer {
-    fn new(gl: &Rc<Context>, job: &Job) -> Result<Timer, GlError> {
-        let options =
-            StereoOptions { frames_between: FramesBetween::Method, policy: None, ..StereoOptions::default() };
-        let create = |method, options| stereo::create(gl, method, &job.render, options);
-        let methods = [
-            create(Method::Conventional, &StereoOptions::default())?,
-            create(Method::Synthesized, &options)?,
-        ];
-        Ok(Timer { gl: gl.clone(), methods, frame: StereoFrame::new(gl, job.eyes.size)? })
-    }
-
-    /// Returns the times up to glFinish in the order of [`TIMED`], after an untimed frame of each.
-    fn run(
-        &mut self,
-        prepared: &mut PreparedScene,
-        then: &EyePair,
-        now: &EyePair,
-    ) -> anyhow::Result<[Duration; 3]> {
-        let mut times = [Duration::ZERO; 3];
-        for is_timed in [false, true] {
-            for (at, time) in times.iter_mut().enumerate() {
-                self.gl.finish();
-                let begin = Instant::now();
-                let method = &mut self.methods[at.min(1)];
-                match at {
-                    2 => {
-                        ensure!(
-                            method.show_again(now, &self.frame.targets(), 0.0)?,
-                            "the head has turned too far"
-                        )
-                    }
-                    _ => method.render(&mut prepared.renderer, &prepared.scene, then, &mut self.frame)?,
-                }
-                self.gl.finish();
-                if is_timed {
-                    *time = begin.elapsed();
-                }
-            }
-        }
-        Ok(times)
-    }
+/// One frame as each contender shows it, and as it really is.
+struct Shown {
+    images: Vec<(&'static str, RgbImage)>,
+    truth: RgbImage,
 }
 
 /// Renders views and shows them at other poses.
@@ -212,7 +175,7 @@ impl Reprojector {
         prepared: &PreparedScene,
         then: &EyePair,
         now: &EyePair,
-    ) -> anyhow::Result<(Shown, RgbImage)> {
+    ) -> anyhow::Result<Shown> {
         let [old, target] = [then, now].map(|pair| pair.view(pair.dominant));
         let motion = HeadMotion {
             rotation: old.pose.orientation.angle_between(target.pose.orientation),
@@ -223,16 +186,16 @@ impl Reprojector {
         let (same, _) = self.render(prepared, &old)?;
         let (_, image) = self.render(prepared, &source)?;
         let warp = PoseWarp::new(&source, &target)?;
-        let shown = vec![
+        let images = vec![
             (SAME_IMAGE, same),
             (ROTATION, self.show(image, &warp.rotation_only())?),
             (ANY_VIEW, self.show(image, &warp)?),
         ];
-        Ok((shown, truth))
+        Ok(Shown { images, truth })
     }
 
     /// Synthesizes the other of two canted eyes, directly and by parallel eyes with as many pixels per tangent.
-    fn canted(&mut self, prepared: &PreparedScene, eyes: &EyePair) -> anyhow::Result<(Shown, RgbImage)> {
+    fn canted(&mut self, prepared: &PreparedScene, eyes: &EyePair) -> anyhow::Result<Shown> {
         let other = eyes.dominant.other();
         let [own, target] = [eyes.dominant, other].map(|eye| eyes.view(eye));
         let (truth, _) = self.render(prepared, &target)?;
@@ -255,6 +218,7 @@ impl Reprojector {
         self.gather.synthesize(image, &views.warp, &Destination::whole(&self.parallel))?;
         let image = Source::new(self.parallel.color(0).raw(), self.parallel.depth().raw());
         let turned = self.show(image, &PoseWarp::new(&views.target, &target)?.rotation_only())?;
-        Ok((vec![(SAME_IMAGE, same), (PARALLEL_EYES, turned), (ANY_VIEW, direct)], truth))
+        let images = vec![(SAME_IMAGE, same), (PARALLEL_EYES, turned), (ANY_VIEW, direct)];
+        Ok(Shown { images, truth })
     }
 }

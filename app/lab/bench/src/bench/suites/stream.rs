@@ -1,13 +1,14 @@
 //! The bits of a stream, and the quality of what it shows some frames later.
 
-use super::Runner;
-use crate::bench::job::{Job, STREAM_QUANTIZERS};
-use crate::bench::motion::Motion;
-use crate::bench::pictures::picture_folder;
-use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::views::{HEADSET_RATE, Views};
-use crate::streaming::Receiver;
 use image::RgbImage;
+
+use super::super::Experiment;
+use super::super::job::{Choices, Job, QUICK_SCENES};
+use super::super::record::{Measurement, metric};
+use super::super::runner::{Round, Runner};
+use super::super::scenes::LazyObject;
+use super::super::views::{HEADSET_RATE, Motion};
+use crate::streaming::Receiver;
 use yoro::eyes::{Eye, EyePair};
 use yoro_files::interrupt;
 use yoro_media::rgb_image;
@@ -17,56 +18,79 @@ use yoro_render::{PreparedScene, ViewReader};
 use yoro_report::text::slug;
 use yoro_stream::{EyeView, FrameRenderer, Mode, Picture, ViewRequest};
 
+const SCENES: [&str; 3] = ["talk", "street", "atrium"];
+/// The numbers of frames by which frames are shown late, at 72 per second: at once, after 28 and 69 ms.
+const DELAYS: [usize; 3] = [0, 2, 5];
+/// The number of frames, and in the short form.
+const FRAMES: [usize; 2] = [8, 3];
+/// H.264's quantizers.
+const QUANTIZERS: [u8; 3] = [20, 26, 32];
 /// The modes. The bits that the others save are relative to those of the first.
 const MODES: [(Mode, &str); 3] = [
     (Mode::Eyes, "two eyes, rotation"),
     (Mode::Depth, "one eye and depth"),
     (Mode::EyesDepth, "two eyes, depth of one"),
 ];
+const SAME_IMAGE: &str = "same image, not encoded";
 
-impl Runner<'_> {
+/// The bits of a stream, and the quality of what it shows some frames later.
+pub struct Stream;
+
+impl Experiment for Stream {
+    fn name(&self) -> &'static str {
+        "stream"
+    }
+
+    fn about(&self) -> &'static str {
+        "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay"
+    }
+
+    fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {
+        let scenes = if choices.quick { &QUICK_SCENES[..] } else { &SCENES };
+        Ok(choices.sweep(self, choices.scenes(scenes.iter().copied()), DELAYS, |job, late| {
+            job.conditions.label = Some(format!("{late} late"));
+            job.frames = choices.long_or_quick(FRAMES[0], FRAMES[1]);
+        }))
+    }
+
+    fn steps(&self, job: &Job) -> u64 {
+        (job.frames * MODES.len() * QUANTIZERS.len()) as u64
+    }
+
     /// Encodes a walking head's frames in all modes at each quantizer, and measures both eyes at the poses of the head
     /// some frames later.
-    pub(super) fn stream(
-        &mut self,
-        job: &Job,
-        late: usize,
-        prepared: &mut PreparedScene,
-    ) -> anyhow::Result<()> {
-        self.bar.set_message(job.conditions.to_string());
-        let all = Job { frames: job.frames + late, ..job.clone() };
-        let views = Views::of_motion(&all, prepared, Motion::Walk)?;
+    fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
+        runner.announce(job, 0);
+        let views = runner.moving(job, scene, Motion::Walk, job.frames + DELAYS[job.point])?;
         let then = &views.pairs[..job.frames];
         let shown = views.clone().last(job.frames);
         let now = &shown.pairs;
-        let mut reader = ViewReader::new(self.gl)?;
-        let mut eye = |prepared: &mut PreparedScene, pair: &EyePair, eye| -> anyhow::Result<RgbImage> {
+        let mut reader = ViewReader::new(runner.gl)?;
+        let mut eye = |scene: &mut PreparedScene, pair: &EyePair, eye| -> anyhow::Result<RgbImage> {
             interrupt::check()?;
-            let rgba = reader.color(&mut prepared.renderer, &prepared.scene, &pair.view(eye))?;
+            let rgba = reader.color(&mut scene.renderer, &scene.scene, &pair.view(eye))?;
             Ok(rgb_image(&rgba, pair.size))
         };
-        let mut same = Measurement::new(&job.conditions, "same image, not encoded", 0);
+        let mut round = Round::of_views(job, 0, &shown, scene);
         let mut truths = Vec::new();
         for (then, now) in then.iter().zip(now) {
-            let truth = [eye(prepared, now, Eye::Left)?, eye(prepared, now, Eye::Right)?];
-            let image = eye(prepared, then, then.dominant)?;
-            measure(&mut same, &[image.clone(), image], &truth)?;
+            let truth = [eye(scene, now, Eye::Left)?, eye(scene, now, Eye::Right)?];
+            let image = eye(scene, then, then.dominant)?;
+            push_quality(round.of(SAME_IMAGE), &[image.clone(), image], &truth)?;
             truths.push(truth);
         }
         // The pictures that are saved show the left eye in the last frame.
-        let folder = picture_folder(&self.before.path, &job.conditions);
-        let place = |name: &str| folder.join(format!("{}.png", slug(name)));
         if let Some([left, _]) = truths.last() {
-            yoro_media::save_color(&place("truth"), left)?;
+            runner.save_picture(job, "truth", left)?;
         }
-        let mut measurements = vec![same];
-        let mut receiver = Receiver::new(self.gl)?;
-        let pictures = MODES.map(|(mode, _)| pictures(self.gl, mode, then, prepared));
-        for quantizer in STREAM_QUANTIZERS {
+        let mut receiver = Receiver::new(runner.gl)?;
+        let pictures = MODES.map(|(mode, _)| pictures(runner.gl, mode, then, scene));
+        for quantizer in QUANTIZERS {
             let mut baseline = None;
             for ((_, name), pictures) in MODES.iter().zip(&pictures) {
                 let pictures = pictures.as_ref().map_err(|error| anyhow::anyhow!("{error}"))?;
-                let mut measurement = Measurement::new(&job.conditions, format!("{name}, QP {quantizer}"), 0);
+                let name = format!("{name}, QP {quantizer}");
+                let measurement = round.of(&name);
                 let mut encoder = LiveEncoder::new(LiveEncoderKind::OpenH264, HEADSET_RATE as f32)?;
                 let mut decoder = Decoder::new()?;
                 let mut bytes = 0;
@@ -78,11 +102,11 @@ impl Runner<'_> {
                     anyhow::ensure!(i == 0 || !encoded.is_intra, "the distances change within the sequence");
                     let decoded = decoder.decode(&encoded.data)?;
                     let eyes = receiver.eyes(&decoded, &picture.content, picture.size, &now[i])?;
-                    measure(&mut measurement, &eyes, &truths[i])?;
+                    push_quality(measurement, &eyes, &truths[i])?;
                     if i + 1 == pictures.len() {
-                        yoro_media::save_color(&place(&measurement.contender), &eyes[0])?;
+                        runner.save_picture(job, &slug(&name), &eyes[0])?;
                     }
-                    self.bar.inc(1);
+                    runner.bar.inc(1);
                 }
                 let rate = bytes as f64 * 8e-3 * HEADSET_RATE / (pictures.len() - 1) as f64;
                 measurement.push(metric::KBIT_S, rate);
@@ -90,10 +114,9 @@ impl Runner<'_> {
                     Some(baseline) => measurement.push(metric::SAVED, (1.0 - rate / baseline) * 100.0),
                     None => baseline = Some(rate),
                 }
-                measurements.push(measurement);
             }
         }
-        self.finish_round(job, 0, vec![Record::Scene(shown.facts(job, prepared))], measurements)
+        runner.finish(round)
     }
 }
 
@@ -114,7 +137,7 @@ fn pictures(
 }
 
 /// Records the mean quality of both eyes.
-fn measure(to: &mut Measurement, eyes: &[RgbImage; 2], truth: &[RgbImage; 2]) -> anyhow::Result<()> {
+fn push_quality(to: &mut Measurement, eyes: &[RgbImage; 2], truth: &[RgbImage; 2]) -> anyhow::Result<()> {
     let (mut sums, pairs) = ([0.0; 2], eyes.iter().zip(truth));
     for (eye, truth) in pairs {
         // Equal images have no finite PSNR. They count as 60 dB.

@@ -1,0 +1,36 @@
+//! Quality by the distance between the eyes
+
+use super::super::contender::Contender;
+use super::super::frames::{self, FrameMeasures};
+use super::super::job::{Choices, Job};
+use super::super::runner::Runner;
+use super::super::scenes::LazyObject;
+use super::super::Experiment;
+use yoro_render::PreparedScene;
+
+/// Quality by the distance between the eyes.
+pub struct Ipd;
+
+impl Experiment for Ipd {
+    fn name(&self) -> &'static str {
+        "ipd"
+    }
+
+    fn about(&self) -> &'static str {
+        "Quality as the distance between the eyes grows from 50 to 75 mm"
+    }
+
+    fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {
+        let millimetres: &[u32] = choices.long_or_quick(&[50, 55, 60, 65, 70, 75], &[50, 63, 75]);
+        let contenders = choices.contenders(self.name(), Contender::synthesis(), &Contender::BASELINES)?;
+        Ok(choices.sweep(self, choices.varied_scenes(), millimetres.iter().copied(), |job, mm| {
+            job.contenders.clone_from(&contenders);
+            job.eyes.ipd = mm as f32 * 1e-3;
+            job.conditions.point = Some(f64::from(mm));
+        }))
+    }
+
+    fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
+        frames::measure(runner, job, scene, FrameMeasures { cost: false, quality: true, pictures: false })
+    }
+}
