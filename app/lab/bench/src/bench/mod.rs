@@ -14,14 +14,20 @@ mod measured;
 mod pictures;
 pub mod process;
 pub mod record;
+mod report;
+#[cfg(test)]
+mod report_tests;
+mod results;
 mod runner;
 mod scenes;
 mod subject;
 mod suites;
 mod summary;
+mod tables;
 mod views;
 
 use yoro_render::PreparedScene;
+use yoro_report::Section;
 
 pub use blank::{Blank, BlankFinder, BlankView};
 pub use contender::Contender;
@@ -29,6 +35,8 @@ pub use holes::HoleFinder;
 pub use job::{Choices, Job, Source};
 pub use pictures::{picture_folder, pictures_beside};
 pub use record::{Conditions, Measurement, Record, RecordError, Results, Writer, metric};
+pub use report::{BenchReport, BenchReportError};
+pub use results::{Measured, SettingData, Spread, SuiteData};
 pub use runner::{Bounds, Inputs, Runner};
 pub use scenes::{LazyObject, Object};
 pub use subject::{FrameTime, Subject};
@@ -60,5 +68,10 @@ pub trait Experiment: Sync {
     /// Returns the number of steps of progress of a job: by default the preparation and the frames of each contender.
     fn steps(&self, job: &Job) -> u64 {
         (u64::from(job.rounds) * job.frames as u64 + 1) * job.contenders.len() as u64
+    }
+
+    /// Returns the sections of the report: by default a table of all means.
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        vec![tables::everything(self.name(), self.about(), suite)]
     }
 }

@@ -2,6 +2,9 @@
 
 use yoro_render::MSAA;
 use yoro_render::stereo::Pipeline;
+use super::super::results::SuiteData;
+use super::super::tables::Labels;
+use yoro_report::Section;
 use super::super::contender::Contender;
 use super::super::frames::{self, FrameMeasures};
 use super::super::job::{Choices, Job};
@@ -38,5 +41,22 @@ impl Experiment for AntiAliasing {
 
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
         frames::measure(runner, job, scene, FrameMeasures { cost: true, quality: true, pictures: true })
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "Anti-aliasing",
+            "Each synthesized eye against the same eye rendered with as many samples per pixel. Synthesis takes the mean \
+             colour and the nearest depth of each pixel's samples.",
+        );
+        let labels = Labels {
+            column: "<samples per pixel",
+            title: "PSNR in dB / SSIM / frame time over two renders, means over the scenes",
+            details: "Every scene in full",
+            papers: None,
+            timed: true,
+        };
+        labels.show(&mut section, suite);
+        vec![section]
     }
 }

@@ -1,5 +1,9 @@
 //! Quality by the distance of an object
 
+use super::super::results::SuiteData;
+use super::super::tables::Sweep;
+use yoro_report::paper::DISTANCE;
+use yoro_report::{Axis, Section};
 use super::super::contender::Contender;
 use super::super::frames::{self, FrameMeasures};
 use super::super::job::{Choices, Job, Source};
@@ -33,5 +37,19 @@ impl Experiment for Distance {
 
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
         frames::measure(runner, job, scene, FrameMeasures { cost: false, quality: true, pictures: false })
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let [ssim, psnr] = DISTANCE;
+        let mut section = Section::new(
+            "Distance of the object",
+            format!(
+                "Quality against the distance of one irregular object, scaled so that it keeps its size on the screen. \
+                 The paper shows its curve as a picture only; its text says SSIM {ssim} and {psnr} dB for 0.5 to 3 m."
+            ),
+        );
+        let sweep = Sweep { axis: Axis::new("distance, m"), text: |point| format!("{point}") };
+        sweep.show_quality(&mut section, suite, &[]);
+        vec![section]
     }
 }

@@ -2,6 +2,10 @@
 
 use image::RgbImage;
 
+use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
+use super::super::tables::{MetricColumn, mark_scenes, means_table, scene_table};
+use yoro_report::text::fixed;
+use yoro_report::{Axis, Cell, Plot, Section};
 use super::super::Experiment;
 use super::super::contender::Contender;
 use super::super::frames::Field;
@@ -67,5 +71,48 @@ impl Experiment for Flicker {
         }
         scene.set_time(0.0)?;
         runner.finish(round)
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "Flicker",
+            "Frame-to-frame change of the synthesized eye that a real render does not have, along part of the camera path \
+             at walking pace. The paper does not measure this.",
+        );
+        for (title, name) in [
+            ("Flicker of all pixels", metric::FLICKER),
+            ("Flicker in holes", metric::FLICKER_HOLES),
+            ("Flicker at edges", metric::FLICKER_EDGES),
+        ] {
+            let plot = Plot::rows(title, Axis::new("flicker, of 255").from_zero()).caption("Less is better.");
+            let value = |setting: &SettingData, name_of: &str| setting.find(name_of)?.mean(name);
+            section.plot(mark_scenes(plot, suite, &suite.measured(name), value, |_| Vec::new()));
+        }
+        const COLUMNS: [MetricColumn; 4] = [
+            ("all", metric::FLICKER, 3),
+            ("in holes", metric::FLICKER_HOLES, 3),
+            ("at edges", metric::FLICKER_EDGES, 3),
+            ("elsewhere", metric::FLICKER_REST, 3),
+        ];
+        let contenders = suite.measured(metric::FLICKER);
+        let mut table =
+            means_table(suite, "Flicker, of 255, means over the scenes", &contenders, &COLUMNS);
+        let changes = metric::CHANGES.map(|name| suite.mean(CONVENTIONAL, name));
+        if changes.iter().any(Option::is_some) {
+            let mut cells = vec![Cell::plain("the scene's own change")];
+            cells.extend(changes.map(|change| Cell::base(fixed(change, 3))));
+            cells.truncate(table.columns.len());
+            table.push_first(cells);
+        }
+        section.table(table);
+        let text = |setting: &SettingData, name: &str| {
+            let measured = setting.find(name)?;
+            let holes = fixed(measured.mean(metric::FLICKER_HOLES), 2).unwrap_or_else(|| "–".into());
+            Some(format!("{:.2} / {holes}", measured.mean(metric::FLICKER)?))
+        };
+        let mean = |name: &str| fixed(suite.mean(name, metric::FLICKER), 2);
+        let title = "Flicker of all pixels / in holes";
+        section.table(scene_table(suite, title, &contenders, text, mean, None));
+        vec![section]
     }
 }

@@ -1,6 +1,9 @@
 //! Cost and quality of smaller ImBuffers
 
 use yoro_render::stereo::Pipeline;
+use super::super::results::SuiteData;
+use super::super::tables::Sweep;
+use yoro_report::{Axis, Section};
 use super::super::contender::Contender;
 use super::super::frames::{self, FrameMeasures};
 use super::super::job::{Choices, Job};
@@ -40,5 +43,18 @@ impl Experiment for Imbuffer {
 
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
         frames::measure(runner, job, scene, FrameMeasures { cost: true, quality: true, pictures: false })
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "ImBuffer",
+            "The paper's pipeline with a smaller ImBuffer: its width and height are the image's over the divisor, with \
+             and without linear interpolation.",
+        );
+        let axis = Axis::new("ImBuffer divisor").logarithmic();
+        let sweep = Sweep { axis, text: |point| format!("1/{point}") };
+        sweep.show_quality(&mut section, suite, &[]);
+        sweep.show_times(&mut section, suite);
+        vec![section]
     }
 }

@@ -1,5 +1,9 @@
 //! Quality by the distance between the eyes
 
+use super::super::results::SuiteData;
+use super::super::tables::Sweep;
+use yoro_report::paper::PAPER;
+use yoro_report::{Axis, Section};
 use super::super::contender::Contender;
 use super::super::frames::{self, FrameMeasures};
 use super::super::job::{Choices, Job};
@@ -32,5 +36,15 @@ impl Experiment for Ipd {
 
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
         frames::measure(runner, job, scene, FrameMeasures { cost: false, quality: true, pictures: false })
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "Distance between the eyes",
+            "Quality of the synthesized eye against the interpupillary distance.",
+        );
+        let sweep = Sweep { axis: Axis::new("IPD, mm"), text: |point| format!("{point}") };
+        sweep.show_quality(&mut section, suite, &PAPER.sweeps["ipd"]);
+        vec![section]
     }
 }

@@ -2,6 +2,12 @@
 
 use anyhow::ensure;
 
+use super::super::results::SuiteData;
+use super::super::tables::{cell, metric_table, milliseconds as ms_text, push_refusals};
+use yoro_report::paper::PAPER;
+use yoro_report::stats::mean;
+use yoro_report::text::fixed;
+use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
 use super::super::Experiment;
 use super::super::contender::Contender;
 use super::super::frames::picture_name;
@@ -98,6 +104,70 @@ impl Experiment for Patchers {
             runner.finish(round)?;
         }
         Ok(())
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "Patchers",
+            "How each patcher fills the holes of one reprojected image. The paper's times are from a phone, where its GAN \
+             runs on the CPU.",
+        );
+        let contenders = suite.measured(metric::SSIM);
+        let paper_of = |name: &str| PAPER.patchers.get(name.strip_prefix("patcher-").unwrap_or(name));
+        let time = |name: &str| mean(suite.values(name, |measured| measured.median(metric::PATCH_MS)));
+        let caption = "Means over the scenes. More is better.";
+        let plots = [
+            Plot::rows("PSNR", Axis::new("PSNR, dB")).caption(caption),
+            Plot::rows("SSIM", Axis::new("SSIM, gaussian 11x11")).caption(caption),
+            Plot::rows("Time", Axis::new("patching time, ms").logarithmic())
+                .caption("Of the patcher alone. Less is better."),
+        ];
+        for (i, mut plot) in plots.into_iter().enumerate() {
+            for name in &contenders {
+                // Each patcher is a row; colours distinguish our figures from the paper's.
+                let ours = [suite.mean(name, metric::PSNR), suite.mean(name, metric::SSIM), time(name)][i];
+                if let Some(value) = ours {
+                    plot.mark(name, Entry { label: "here".into(), ..Entry::ours("yoro-gather") }, value);
+                }
+                if let Some(papers) = paper_of(name) {
+                    plot.mark(name, Entry::papers("yoro-paper", "the paper's"), papers[i]);
+                }
+            }
+            section.plot(plot);
+        }
+        let columns = [
+            "<patcher",
+            "PSNR, dB",
+            "SSIM",
+            "FLIP",
+            "holes: PSNR, dB",
+            "holes: SSIM",
+            "time, ms",
+            "the paper's PSNR",
+            "the paper's SSIM",
+            "the paper's time, ms",
+        ];
+        let mut table = Table::new("Means over the scenes", &columns);
+        for name in &contenders {
+            let value = |metric, decimals| cell(name, fixed(suite.mean(name, metric), decimals));
+            let papers = paper_of(name);
+            table.push(vec![
+                Cell::plain(*name),
+                value(metric::PSNR, 2),
+                value(metric::SSIM, 4),
+                value(metric::FLIP, 4),
+                value(metric::HOLE_PSNR, 2),
+                value(metric::HOLE_SSIM, 4),
+                cell(name, time(name).map(ms_text)),
+                Cell::paper(fixed(papers.map(|p| p[0]), 2)),
+                Cell::paper(fixed(papers.map(|p| p[1]), 4)),
+                Cell::paper(papers.map(|p| ms_text(p[2]))),
+            ]);
+        }
+        push_refusals(&mut table, suite);
+        section.table(table);
+        section.table(metric_table(suite, "Every scene and patcher in full", &contenders));
+        vec![section]
     }
 }
 

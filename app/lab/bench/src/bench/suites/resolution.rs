@@ -1,5 +1,8 @@
 //! Cost and quality by resolution
 
+use super::super::results::SuiteData;
+use super::super::tables::Sweep;
+use yoro_report::{Axis, Section};
 use super::super::contender::Contender;
 use super::super::frames::{self, FrameMeasures};
 use super::super::job::{Choices, Job};
@@ -34,5 +37,17 @@ impl Experiment for Resolution {
 
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
         frames::measure(runner, job, scene, FrameMeasures { cost: true, quality: true, pictures: false })
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "Resolution",
+            "Cost and quality against the width of each eye's image. The paper measured at its devices' own resolution \
+             only.",
+        );
+        let sweep = Sweep { axis: Axis::new("width of an eye, pixels"), text: |point| format!("{point}") };
+        sweep.show_times(&mut section, suite);
+        sweep.show_quality(&mut section, suite, &[]);
+        vec![section]
     }
 }

@@ -2,6 +2,12 @@
 
 use image::RgbImage;
 
+use super::super::results::{SettingData, SuiteData};
+use super::super::tables::{cell, push_refusals, quality_of, table_of};
+use yoro_report::paper::PAPER;
+use yoro_report::stats::mean;
+use yoro_report::text::fixed;
+use yoro_report::{Cell, Section, Table};
 use super::super::Experiment;
 use super::super::job::{Choices, Job, QUICK_SCENES};
 use super::super::record::{Measurement, metric};
@@ -118,6 +124,67 @@ impl Experiment for Stream {
         }
         runner.finish(round)
     }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "Streaming",
+            "Frames of a walking head (1.35 m/s, 72 frames a second) as `yoro serve` sends them, encoded by openh264 at one \
+             quantizer: one eye and its depth, from which both eyes are made at the pose where they are shown; both eyes, \
+             turned to that pose; and both eyes with the depth of one. Quality is the mean of both eyes against real renders \
+             at that pose, at once and 2 and 5 frames (28 and 69 ms) later. The first frame's bits, an intra frame's, do not \
+             count. No times are measured.",
+        );
+        section.table(bits(suite));
+        section.table(quality(suite));
+        vec![section]
+    }
+}
+
+/// Returns a table of bits, and of the savings compared with both eyes. They do not depend on the delay.
+fn bits(suite: &SuiteData) -> Table {
+    let scenes = suite.scenes();
+    let title = "Bit rate in kbit/s, and bits saved against both eyes at the same quantizer";
+    let mut table = table_of(title, &["<sent, each with its quantizer"], &scenes);
+    let mut saved = Vec::new();
+    for name in suite.measured(metric::KBIT_S) {
+        let mut cells = vec![Cell::plain(name)];
+        for scene in &scenes {
+            let setting = suite.settings.iter().find(|setting| setting.conditions.scene == *scene);
+            let measured = setting.and_then(|setting| setting.find(name));
+            let value = |metric: &str| measured.and_then(|measured| measured.mean(metric));
+            let share = value(metric::SAVED);
+            saved.extend(share.filter(|_| name.starts_with("one eye")));
+            let text = fixed(value(metric::KBIT_S), 0).map(|rate| match fixed(share, 1) {
+                Some(share) => format!("{rate}, {share} %"),
+                None => rate,
+            });
+            cells.push(cell(name, text));
+        }
+        table.push(cells);
+    }
+    push_refusals(&mut table, suite);
+    let percent = |share: f64| format!("{:+.1} %", 100.0 * share);
+    let papers = mean(PAPER.scenes.iter().map(|scene| scene.kbit[0] / scene.kbit[1] - 1.0));
+    table.note = format!(
+        "Mean difference of one eye and depth here {}; the paper's {}. The paper names neither quantizer nor resolution.",
+        mean(saved).map_or_else(|| "–".into(), |saved| percent(-saved / 100.0)),
+        papers.map_or_else(|| "–".into(), percent),
+    );
+    table
+}
+
+/// Returns a table of the quality of both eyes by delay.
+fn quality(suite: &SuiteData) -> Table {
+    let labels: Vec<String> = suite.settings.iter().map(SettingData::label).collect();
+    let labels: Vec<&str> = labels.iter().map(String::as_str).collect();
+    let title = "Quality of both eyes by scene and frames of delay: PSNR in dB / SSIM";
+    let mut table = table_of(title, &["<shown by"], &labels);
+    for name in suite.contenders() {
+        let of = |setting: &SettingData| cell(name, setting.find(name).and_then(quality_of));
+        table.push([Cell::plain(name)].into_iter().chain(suite.settings.iter().map(of)).collect());
+    }
+    table.note = "The same image is not encoded.".into();
+    table
 }
 
 fn pictures(

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::bench::record::{Conditions, Header, Results, SceneFacts, metric};
+use super::record::{Conditions, Header, Results, SceneFacts, metric};
 use yoro_report::stats::{Summary, geometric_mean, mean, median, percentile, unique};
 
 /// The name of the contender that costs are compared with: two full renders.
@@ -11,7 +11,7 @@ pub const CONVENTIONAL: &str = "conventional";
 pub const MONO: &str = "mono";
 
 /// One suite as measured under one set of conditions.
-pub struct Suite {
+pub struct SuiteData {
     /// Its name.
     pub name: String,
     /// Machine, command and parameters; those of the first file if several are combined, without its `--shard`.
@@ -134,7 +134,7 @@ impl SettingData {
     }
 }
 
-impl Suite {
+impl SuiteData {
     /// Returns the names of all contenders, measured or not, in the order of measurement.
     pub fn contenders(&self) -> Vec<&str> {
         let measured = self.settings.iter().flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()));
@@ -193,6 +193,11 @@ impl Suite {
         unique(self.settings.iter().filter_map(|setting| setting.conditions.label.as_deref()))
     }
 
+    /// Returns the settings with a label.
+    pub fn labelled<'a>(&'a self, label: &'a str) -> impl Iterator<Item = &'a SettingData> {
+        self.settings.iter().filter(move |setting| setting.conditions.label.as_deref() == Some(label))
+    }
+
     /// Returns the scenes, in order.
     pub fn scenes(&self) -> Vec<&str> {
         unique(self.settings.iter().map(|setting| setting.conditions.scene.as_str()))
@@ -219,8 +224,8 @@ fn same_conditions(a: &Header, b: &Header) -> bool {
 
 /// Returns the suites of all files, in the order of the files. A suite that was measured under several conditions
 /// occurs once for each.
-pub fn suites(files: &[Results]) -> Vec<Suite> {
-    let mut suites: Vec<Suite> = Vec::new();
+pub fn suites(files: &[Results]) -> Vec<SuiteData> {
+    let mut suites: Vec<SuiteData> = Vec::new();
     for file in files {
         // The numbers of rounds continue from those of earlier files with the same settings.
         let mut first_round: BTreeMap<String, u32> = BTreeMap::new();
@@ -269,10 +274,10 @@ fn without_shard(command: &str) -> String {
     words.join(" ")
 }
 
-fn entry<'a>(suites: &'a mut Vec<Suite>, header: &Header, conditions: &Conditions) -> &'a mut SettingData {
+fn entry<'a>(suites: &'a mut Vec<SuiteData>, header: &Header, conditions: &Conditions) -> &'a mut SettingData {
     let found = suites.iter().position(|s| s.name == conditions.suite && same_conditions(&s.header, header));
     let suite = found.unwrap_or_else(|| {
-        suites.push(Suite { name: conditions.suite.clone(), header: header.clone(), settings: Vec::new() });
+        suites.push(SuiteData { name: conditions.suite.clone(), header: header.clone(), settings: Vec::new() });
         suites.len() - 1
     });
     let command = &mut suites[suite].header.machine.command;
