@@ -12,11 +12,11 @@ use yoro::opengl::{
 };
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
-use yoro_estimate::Recorder;
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
 use yoro_render::stereo::{self, ImBufferSize, Method, Paper, PaperOptions, StereoOptions};
 use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer};
 use yoro_shaders::{Assembled, MissingFile};
+use yoro_test_support::record::Recorder;
 
 use crate::{is_tested, scene};
 
@@ -44,10 +44,6 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<BTreeSet<Pro
     viewer(gl)?;
     Ok(recorder.programs().iter().map(|recipe| recipe.as_ref().clone()).collect())
 }
-
-/// Values of `PARTS` in `include/segments.glsl`. Each adds a part of the march: the law; the first steps; the search
-/// over segments; events; the fill; crossings.
-const MARCH_PARTS: [&str; 6] = ["1", "2", "6", "14", "30", "62"];
 
 fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let outputs = [(false, false), (false, true), (true, false), (true, true)]
@@ -86,19 +82,6 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     GuessedDepth::new(gl, &Options::default())?;
     // What OpenGL ES 3.0 and WebGL 2 compile.
     Gather::with_macros(gl, &Options::default(), Outputs::default(), &["WITHOUT_ES_310"])?;
-    // The march split into parts, to determine the cost of each.
-    let march =
-        ShaderSource::Raster { vertex: "synthesis/march.vert", fragment: "synthesis/gather/march.frag" };
-    let define = |name| (name, String::new());
-    for pairs in [None, Some("DEPTH_PAIRS")] {
-        let part = |more: Option<&'static str>, parts: &str| {
-            let defines: Vec<_> = pairs.into_iter().chain(more).map(define).collect();
-            Program::new(gl, march, &[defines, vec![("PARTS", parts.to_owned())]].concat())
-        };
-        MARCH_PARTS.iter().try_for_each(|parts| part(None, parts).map(drop))?;
-        part(Some("WRITE_DEPTH"), MARCH_PARTS[0])?;
-    }
-    Program::new(gl, march, &[define("BLOOM"), ("PARTS", MARCH_PARTS[0].to_owned())])?;
     // As above, of samples in a tile.
     let options = Options { depth_pairs: true, ..Options::default() };
     for (depth, macros) in [(false, &["BLOOM"][..]), (true, &["BLOOM"]), (false, &[]), (true, &[])] {

@@ -93,6 +93,11 @@ impl BenchReport {
         Report { title: TITLE.into(), summary: vec![PAPERS_MARK.into()], sections }
     }
 
+    /// Returns the files that [`BenchReport::write`] writes into `folder`.
+    pub fn files(folder: &Path) -> ReportFiles {
+        ReportFiles::of(folder, "report", false)
+    }
+
     /// Writes `report.html` and `report.md` into a folder.
     ///
     /// # Errors

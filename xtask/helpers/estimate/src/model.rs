@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use crate::costs::Costs;
 use crate::gpus::{Device, GPUS};
 use crate::lamps::Lamps;
-use crate::record::{Command, Draw};
 use crate::traffic::{Assumed, fragments, pieces};
 use yoro_gl::{ProgramRecipe, Shape};
+use yoro_test_support::record::{Command, Draw};
 
-/// The prefix of the names of synthesis passes. Their execution is counted by [`Meter`](crate::Meter).
+/// The prefix of the names of synthesis passes. Their execution is counted by [`Counter`](crate::gather::Counter).
 pub const SYNTHESIS: &str = "gather ";
 /// The size of an eye in pixels, as on a Quest 3.
 pub const SIZE: [u32; 2] = [1680, 1760];

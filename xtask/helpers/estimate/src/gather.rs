@@ -1,8 +1,8 @@
-//! Estimates what the synthesis executes on GPUs that are not available here.
+//! What the synthesis executes.
 //!
-//! The runs of the parts of `gather` are counted by its own shaders on real frames. A GPU runs a part as often as the
-//! slowest pixel of a wave does. The sizes of the parts are those that Mesa's compilers make of the same source
-//! (`shader-cost.csv`). The rates of GPUs are assumptions: [`GPUS`](crate::GPUS).
+//! The runs of the parts of `gather` are counted on real frames, by a copy of its shaders into which `cargo xtask
+//! maintain estimate` has written counters. A GPU runs a part as often as the slowest pixel of a wave does. The sizes of
+//! the parts are those that Mesa's compilers make of the same source without some of them.
 
 use std::rc::Rc;
 
@@ -10,15 +10,14 @@ use anyhow::ensure;
 
 use crate::costs::Work;
 use crate::gpus::Device;
-use crate::metric;
-use crate::record::{Command, Draw};
 use crate::traffic::MARCH;
 use crate::waves::{combine, wave_size};
-use yoro::eyes::{DepthConvention, DepthRange, EyePair, GuardBand, SynthesisViews};
+use yoro::eyes::SynthesisViews;
 use yoro::opengl::{Gather, Options, Outputs};
 use yoro::synthesis::Uniforms;
 use yoro_gl::{Context, Filter, Format, RenderTarget};
 use yoro_render::{NearestDepth, PreparedScene, ViewTargets};
+use yoro_test_support::record::{Command, Draw};
 
 /// The size of a tile in pixels. The first two passes draw one fragment per tile.
 const TILE: [u32; 2] = [16, 8];
@@ -57,7 +56,7 @@ impl March {
     }
 }
 
-/// How often the march's parts run, from a [`Gather`] with `COUNT_TRIPS`: for one pixel, or the maximum over a wave's pixels.
+/// How often the march's parts run: for one pixel, or the maximum over a wave's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Trips {
     /// 1 if the pixel's tile has a law.
@@ -194,22 +193,6 @@ impl Costs {
     }
 }
 
-/// An image of counts, four bytes per pixel.
-struct Counts<'a> {
-    pixels: &'a [u8],
-    size: [u32; 2],
-}
-
-impl Counts<'_> {
-    /// Returns the largest counts in each wave.
-    fn waves(&self, wave: [u32; 2]) -> Vec<Trips> {
-        let pixels = self.pixels.as_chunks().0.iter();
-        combine(pixels, self.size[0], wave, |largest: &mut Trips, pixel| {
-            *largest = largest.max(Trips::of(*pixel))
-        })
-    }
-}
-
 /// Returns the trips of the loop of the second pass (`synthesis/gather/spans.frag`), as the mean over the target's
 /// columns of tiles.
 fn span_trips(views: &SynthesisViews) -> f64 {
@@ -233,88 +216,75 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.sum::<f64>() / count
 }
 
-/// Counts what `gather` executes on a device.
-pub struct Meter {
-    device: Device,
-    costs: Costs,
-    /// Writes counts instead of colours.
+/// Counts how often parts of `gather` run.
+pub struct Counter {
     counting: Gather,
     targets: ViewTargets,
     counts: RenderTarget,
 }
 
-impl Meter {
+impl Counter {
     /// Compiles the counting pipeline, for views whose nearest depth is had in this way.
     ///
     /// # Errors
-    /// If the driver refuses it, or if the table lacks a program.
-    pub fn new(gl: &Rc<Context>, device: Device, depth: NearestDepth) -> anyhow::Result<Meter> {
-        let depth_pairs = depth == NearestDepth::Carried;
-        let options = Options { depth_pairs, ..Options::default() };
-        Ok(Meter {
-            device,
-            costs: Costs::of(device.gpu, depth_pairs)?,
-            counting: Gather::with_macros(gl, &options, Outputs::default(), &["COUNT_TRIPS"])?,
+    /// If the driver refuses it.
+    pub fn new(gl: &Rc<Context>, depth: NearestDepth) -> anyhow::Result<Counter> {
+        let options = Options { depth_pairs: depth == NearestDepth::Carried, ..Options::default() };
+        Ok(Counter {
+            counting: Gather::new(gl, &options, Outputs::default())?,
             targets: ViewTargets::default(),
             counts: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?,
         })
     }
 
-    /// Returns the values of one frame, by metric.
+    /// Counts for views whose depth is reversed, since no other can be carried.
     ///
     /// # Errors
     /// If the eyes cannot be synthesized, or GL refuses.
-    pub fn measure(
-        &mut self,
-        prepared: &mut PreparedScene,
-        pair: &EyePair,
-    ) -> anyhow::Result<Vec<(&'static str, f64)>> {
-        let (views, pixels) = self.count(prepared, pair)?;
-        Ok(self.values(&views, &pixels, pair.size, March::default()))
+    pub fn count(&mut self, scene: &mut PreparedScene, views: SynthesisViews) -> anyhow::Result<Counted> {
+        scene.synthesize(&mut self.counting, &mut self.targets, &views, &mut self.counts)?;
+        Ok(Counted { pixels: self.counts.read_rgba8(0, [0, 0], views.target.size), views })
+    }
+}
+
+/// The counts of a synthesized view, row by row.
+pub struct Counted {
+    pub views: SynthesisViews,
+    pixels: Vec<u8>,
+}
+
+/// What `gather` executes for each pixel of a synthesized view on a GPU.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Executed {
+    /// Issue slots of the first pass, the second and the third.
+    pub slots: [f64; 3],
+    /// Texture instructions of all three.
+    pub fetches: f64,
+    /// Bytes that they read and write, counting every texel once.
+    pub bytes: f64,
+}
+
+impl Counted {
+    /// Returns the largest counts in each wave.
+    fn waves(&self, wave: [u32; 2]) -> Vec<Trips> {
+        let pixels = self.pixels.as_chunks().0.iter();
+        combine(pixels, self.views.target.size[0], wave, |largest: &mut Trips, pixel| {
+            *largest = largest.max(Trips::of(*pixel))
+        })
     }
 
-    /// Returns the views of one frame with a guard band from 1 m, and the counts at the synthesized eye's pixels, from
-    /// which [`Meter::values`] of any device are computed.
+    /// Returns the share of the pixels whose tile has a law, 0 to 1.
+    pub fn laws(&self) -> f64 {
+        mean(self.waves([1, 1]).iter().map(|trips| trips.law))
+    }
+
+    /// Returns what a GPU executes with this variant of the march.
     ///
     /// # Errors
-    /// Those of [`Meter::measure`].
-    pub fn count(
-        &mut self,
-        prepared: &mut PreparedScene,
-        pair: &EyePair,
-    ) -> anyhow::Result<(SynthesisViews, Vec<u8>)> {
-        // Only reversed depth can be carried.
-        let depth = DepthRange { convention: DepthConvention::Reversed, ..pair.depth };
-        let views = EyePair { depth, ..*pair }.synthesis_views(GuardBand::Distance(1.0))?;
-        let pixels = self.count_views(prepared, &views)?;
-        Ok((views, pixels))
-    }
-
-    /// Returns the counts at the synthesized eye's pixels for views whose depth is reversed.
-    ///
-    /// # Errors
-    /// Those of [`Meter::measure`].
-    pub fn count_views(
-        &mut self,
-        prepared: &mut PreparedScene,
-        views: &SynthesisViews,
-    ) -> anyhow::Result<Vec<u8>> {
-        prepared.synthesize(&mut self.counting, &mut self.targets, views, &mut self.counts)?;
-        Ok(self.counts.read_rgba8(0, [0, 0], views.target.size))
-    }
-
-    /// Returns the values of a counted frame whose eyes have this size, by metric, with this variant of the march.
-    pub fn values(
-        &self,
-        views: &SynthesisViews,
-        pixels: &[u8],
-        size: [u32; 2],
-        variant: March,
-    ) -> Vec<(&'static str, f64)> {
-        let counts = Counts { pixels, size };
-        let Meter { device, costs, .. } = self;
-        let waves = counts.waves(wave_size(costs.lanes));
-        let each = counts.waves([1, 1]);
+    /// If the table of costs lacks a program.
+    pub fn executed(&self, device: &Device, depth: NearestDepth, variant: March) -> anyhow::Result<Executed> {
+        let costs = Costs::of(device.gpu, depth == NearestDepth::Carried)?;
+        let waves = self.waves(wave_size(costs.lanes));
         let march: Vec<Work> = waves.iter().map(|wave| costs.march(*wave, variant)).collect();
         let march = Work {
             slots: mean(march.iter().map(|work| work.slots)),
@@ -322,44 +292,29 @@ impl Meter {
         };
         let tile = 1.0 / f64::from(TILE[0] * TILE[1]);
         let looped = |pass: &str, trips: f64, body: &str| costs.part(pass).plus(trips, costs.part(body));
-        let wider = f64::from(views.warp.source_size[0]) / f64::from(size[0]);
+        let wider = f64::from(self.views.warp.source_size[0]) / f64::from(self.views.target.size[0]);
         let tiles = Work::default().plus(tile * wider, looped("tiles", TILE_TRIPS, "tiles: two rows"));
-        let spans = looped("spans", span_trips(views), "spans: tile")
+        let spans = looped("spans", span_trips(&self.views), "spans: tile")
             .plus(LAW_TILES, costs.part("spans: plane"))
             .plus(LAW_TILES - 1.0, costs.part("spans: joint"));
         let spans = Work::default().plus(tile, spans);
-        let all = march.plus(1.0, tiles).plus(1.0, spans);
-        let searches = mean(each.iter().map(|trips| trips.searches));
-        let bytes = BYTES + DEPTH_BYTES * searches;
-        let ms_of = 1e3 * f64::from(size[0]) * f64::from(size[1]);
-        vec![
-            (metric::LAW_PIXEL, 1.0 - searches),
-            (metric::LAW_WAVE, mean(waves.iter().map(|trips| 1.0 - trips.searches))),
-            (metric::TRIPS_PIXEL, mean(each.iter().map(|trips| trips.short))),
-            (metric::TRIPS_WAVE, mean(waves.iter().map(|trips| trips.short))),
-            (metric::GOES_ON_PIXEL, mean(each.iter().map(|trips| trips.takes_long_way))),
-            (metric::GOES_ON_WAVE, mean(waves.iter().map(|trips| trips.takes_long_way))),
-            (metric::LONG_TRIPS_WAVE, mean(waves.iter().map(|trips| trips.segments))),
-            (metric::SLOTS_TILES, tiles.slots),
-            (metric::SLOTS_SPANS, spans.slots),
-            (metric::SLOTS_MARCH, march.slots),
-            (metric::SLOTS, all.slots),
-            (metric::FETCHES, all.fetches),
-            (metric::ALU_MS, ms_of * all.slots / device.slots),
-            (metric::FETCH_MS, ms_of * all.fetches / device.fetches),
-            (metric::MEMORY_MS, ms_of * bytes / device.bytes),
-        ]
+        Ok(Executed {
+            slots: [tiles.slots, spans.slots, march.slots],
+            fetches: tiles.fetches + spans.fetches + march.fetches,
+            bytes: BYTES + DEPTH_BYTES * (1.0 - self.laws()),
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpus::DEVICES;
+    use crate::gpus::GPUS;
+    use yoro::eyes::{EyeOptions, GuardBand, Pose};
 
     #[test]
     fn all_devices_have_all_parts() {
-        for device in DEVICES {
+        for device in GPUS {
             let costs = Costs::of(device.gpu, false).unwrap();
             let law = costs.part("march: law");
             let short = costs.part("march: short way");
@@ -389,7 +344,8 @@ mod tests {
         set(0, 0, [3, 0, 0, 0]);
         set(3, 2, [1 | 8 | 16, 9, 2, 7]);
         set(5, 1, [2, 0, 0, 0]);
-        let counts = Counts { pixels: &pixels, size: [6, 3] };
+        let pair = EyeOptions { size: [6, 3], ..EyeOptions::default() }.pair(Pose::IDENTITY);
+        let counts = Counted { pixels, views: pair.synthesis_views(GuardBand::None).unwrap() };
         let short = Trips { law: 1.0, searches: 1.0, short: 2.0, ..Trips::default() };
         let long = Trips {
             short: 3.0,

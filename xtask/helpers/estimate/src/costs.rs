@@ -1,10 +1,13 @@
 //! The cost of one invocation of each shader, from `shader-cost.csv`.
 
 use anyhow::{Context as _, ensure};
+use xtask::maintain::estimate::{Row, Table};
 use yoro_gl::ProgramRecipe;
 
-/// The table that `cargo xtask maintain shader-cost --bless` writes.
+/// The table that `cargo xtask maintain estimate --shaders --bless` writes.
 const TABLE: &str = include_str!("../shader-cost.csv");
+/// What to do if it lacks something.
+const RENEW: &str = "run cargo xtask maintain estimate --shaders --bless";
 /// The macros of maps. The table has materials without maps and with all of these.
 const MAPS: [&str; 4] = ["DIFFUSE_MAP", "SPECULAR_MAP", "EMISSIVE_MAP", "NORMAL_MAP"];
 
@@ -58,17 +61,6 @@ impl Parts {
     }
 }
 
-/// A row of the table.
-struct Row {
-    file: &'static str,
-    macros: Vec<&'static str>,
-    stage: &'static str,
-    instructions: f64,
-    fetches: f64,
-    fragment: Fragment,
-    loops: &'static str,
-}
-
 /// The costs on one GPU.
 pub struct Costs {
     rows: Vec<Row>,
@@ -80,13 +72,11 @@ impl Costs {
     /// Reads the costs on a GPU.
     ///
     /// # Errors
-    /// If the table has no entry for this GPU.
+    /// If the table is damaged, or has nothing of this GPU.
     pub fn of(gpu: &str) -> anyhow::Result<Costs> {
-        let rows: Vec<Row> = TABLE.lines().filter_map(|line| row(gpu, line)).collect();
-        ensure!(
-            !rows.is_empty(),
-            "app/lab/estimate/shader-cost.csv has nothing of {gpu}: run cargo xtask maintain shader-cost --bless"
-        );
+        let mut rows = Table::parse(TABLE)?.rows;
+        rows.retain(|row| row.gpu == gpu);
+        ensure!(!rows.is_empty(), "shader-cost.csv has nothing of {gpu}: {RENEW}");
         Ok(Costs { rows, lanes: if gpu == "g52" { 8 } else { 16 } })
     }
 
@@ -98,18 +88,22 @@ impl Costs {
     pub fn fragment(&self, program: &ProgramRecipe) -> anyhow::Result<Fragment> {
         let [none, all] = [false, true].map(|maps| self.find(program, "fragment", maps));
         let none = none.or(all);
-        ensure!(
-            none.is_some(),
-            "app/lab/estimate/shader-cost.csv lacks {:?}: run cargo xtask maintain shader-cost --bless",
-            program.files
-        );
-        let [none, all] = [none, all].map(|row| row.map(|row| row.fragment).unwrap_or_default());
+        ensure!(none.is_some(), "shader-cost.csv lacks {:?}: {RENEW}", program.files);
+        let of = |row: &Row| {
+            // The only loop of these shaders is the one over lamps.
+            let is_lit = ["render/forward.frag", "render/transparent.frag"].contains(&file(row));
+            let lamp = row.loops.split(['/', ' ']).next().and_then(|slots| slots.parse().ok());
+            let lamp = if is_lit { lamp.unwrap_or(0.0) } else { 0.0 };
+            let slots = f64::from(row.slots.unwrap_or(0)) - lamp;
+            Fragment { slots, lamp, lanes: row.lanes_per_wave.unwrap_or(self.lanes) }
+        };
+        let [none, all] = [none, all].map(|row| row.map(of).unwrap_or_default());
         let maps = MAPS.iter().filter(|map| program.defines.iter().any(|(name, _)| name == *map)).count();
         let share = if all.slots > 0.0 { maps as f64 / MAPS.len() as f64 } else { 0.0 };
         Ok(Fragment {
             slots: none.slots + share * (all.slots - none.slots),
             lamp: none.lamp + share * (all.lamp - none.lamp),
-            lanes: if none.lanes > 0 { none.lanes } else { self.lanes },
+            lanes: none.lanes,
         })
     }
 
@@ -118,23 +112,21 @@ impl Costs {
     /// # Errors
     /// If the table lacks the shader.
     pub fn parts(&self, file: &str, macros: &[&str]) -> anyhow::Result<Parts> {
-        let found =
-            self.rows.iter().find(|row| row.stage == "fragment" && row.file == file && row.macros == macros);
-        let row = found.with_context(|| {
-            format!(
-                "app/lab/estimate/shader-cost.csv lacks {file} {macros:?}: run cargo xtask maintain shader-cost --bless"
-            )
-        })?;
-        let lanes = if row.fragment.lanes > 0 { row.fragment.lanes } else { self.lanes };
-        let straight = Work { slots: row.fragment.slots, fetches: row.fetches };
+        let name = [&[file], macros].concat().join(" ");
+        let row = self.rows.iter().find(|row| row.stage == "fragment" && row.program == name);
+        let row = row.with_context(|| format!("shader-cost.csv lacks {name}: {RENEW}"))?;
+        let work = |slots: u32, fetches: u32| Work { slots: slots.into(), fetches: fetches.into() };
+        let straight = work(row.slots.unwrap_or(0), row.fetches.unwrap_or(0));
+        let lanes = row.lanes_per_wave.unwrap_or(self.lanes);
         let mut parts = Parts { straight, loops: Vec::new(), lanes };
         let mut outermost = 0;
         for text in row.loops.split_whitespace() {
             let (is_inner, body) = text.strip_prefix('>').map_or((false, text), |body| (true, body));
-            let body = work(body).filter(|_| !is_inner || !parts.loops.is_empty());
-            let body = body.with_context(|| {
-                format!("app/lab/estimate/shader-cost.csv has unreadable loops of {file}: {}", row.loops)
-            })?;
+            let body = body.split_once('/').and_then(|(slots, fetches)| {
+                Some(work(slots.parse().ok()?, fetches.parse().ok()?))
+            });
+            let body = body.filter(|_| !is_inner || !parts.loops.is_empty());
+            let body = body.with_context(|| format!("unreadable loops of {name}: {}", row.loops))?;
             let around = if is_inner { &mut parts.loops[outermost] } else { &mut parts.straight };
             *around = around.minus(body);
             if !is_inner {
@@ -147,62 +139,36 @@ impl Costs {
 
     /// Returns the number of instructions of a program's vertex shader, including those of its position shader on Mali.
     pub fn vertex(&self, program: &ProgramRecipe) -> f64 {
-        ["position", "vertex"]
-            .iter()
-            .filter_map(|stage| self.find(program, stage, false))
-            .map(|row| row.instructions)
-            .sum()
+        let stages = ["position", "vertex"].iter().filter_map(|stage| self.find(program, stage, false));
+        stages.map(|row| f64::from(row.instructions)).sum()
     }
 
     /// Returns the row of the shader that is most similar to a program's. The table has each style and each way of
     /// drawing both eyes, but no combination of them, and no scene without a sun.
     fn find(&self, program: &ProgramRecipe, stage: &str, maps: bool) -> Option<&Row> {
-        let file = program.files.last()?;
-        let has = |text: &&&str| {
+        let own_file = program.files.last()?;
+        let has = |text: &&str| {
             let (name, value) = text.split_once('=').unwrap_or((text, ""));
             program.defines.iter().any(|(own, other)| own == name && other == value)
         };
-        let alike = |row: &&Row| {
-            let macros = row.macros.iter().filter(|name| !MAPS.contains(name));
-            let (shared, all) = (macros.clone().filter(has).count() as i32, macros.count() as i32);
-            (2 * shared - all, shared)
+        let similarity = |row: &&Row| {
+            let all: Vec<&str> = macros(row).filter(|name| !MAPS.contains(name)).collect();
+            let shared = all.iter().filter(|name| has(name)).count() as i32;
+            (2 * shared - all.len() as i32, shared)
         };
         let fits = |row: &&Row| {
-            row.file == file
-                && row.stage == stage
-                && row.macros.iter().any(|name| MAPS.contains(name)) == maps
+            file(row) == own_file && row.stage == stage && macros(row).any(|name| MAPS.contains(&name)) == maps
         };
-        self.rows.iter().filter(fits).max_by_key(alike)
+        self.rows.iter().filter(fits).max_by_key(similarity)
     }
 }
 
-/// Reads a line of the table if it belongs to this GPU.
-fn row(gpu: &str, line: &'static str) -> Option<Row> {
-    let cells: Vec<&str> = line.split(',').collect();
-    let [of, program, stage, instructions, slots, _, _, lanes, fetches, .., loops] = cells[..] else {
-        return None;
-    };
-    if of != gpu {
-        return None;
-    }
-    let mut words = program.split(' ');
-    let (file, macros) = (words.next()?, words.collect());
-    let number = |text: &str| text.parse().unwrap_or(0.0);
-    let lamp = if is_lit(file) { loops.split(['/', ' ']).next().map_or(0.0, number) } else { 0.0 };
-    let fragment = Fragment { slots: number(slots) - lamp, lamp, lanes: lanes.parse().unwrap_or(0) };
-    let (instructions, fetches) = (number(instructions), number(fetches));
-    Some(Row { file, macros, stage, instructions, fetches, fragment, loops })
+fn file(row: &Row) -> &str {
+    row.program.split(' ').next().unwrap_or_default()
 }
 
-/// Parses the work of a loop's body: slots and fetches, such as `64/1`.
-fn work(text: &str) -> Option<Work> {
-    let (slots, fetches) = text.split_once('/')?;
-    Some(Work { slots: slots.parse().ok()?, fetches: fetches.parse().ok()? })
-}
-
-/// True if the shader's only loop is the one over lamps.
-fn is_lit(file: &str) -> bool {
-    ["render/forward.frag", "render/transparent.frag"].contains(&file)
+fn macros(row: &Row) -> impl Iterator<Item = &str> {
+    row.program.split(' ').skip(1)
 }
 
 #[cfg(test)]
@@ -234,28 +200,15 @@ mod tests {
     }
 
     #[test]
-    fn the_loop_over_lamps_is_counted_for_each_lamp() {
-        let costs = Costs::of("a740").unwrap();
-        const PROGRAM: &str = "render/forward.frag SUN SHADOWS MAX_POINT_LIGHTS=24 LIGHT_TILES=128 LIGHT_TILE_COLUMNS=16 MULTISAMPLE CARRIED=4";
-        let whole = TABLE.lines().find(|line| line.starts_with(&format!("a740,{PROGRAM},fragment,")));
-        let total: f64 = whole.unwrap().split(',').nth(4).unwrap().parse().unwrap();
-        let words: Vec<&str> = PROGRAM.split(' ').collect();
-        let Fragment { slots, lamp, lanes } = costs.fragment(&recipe(words[0], &words[1..])).unwrap();
-        assert!(lamp > 50.0 && (slots + lamp - total).abs() < 1e-9 && lanes == 128, "{slots} {lamp} {lanes}");
-    }
-
-    #[test]
     fn parts_are_counted_once() {
         for gpu in GPUS {
             let costs = Costs::of(gpu).unwrap();
             let march = costs.parts("synthesis/any_view/march.frag", &[]).unwrap();
             let fragment = costs.find(&recipe("synthesis/any_view/march.frag", &[]), "fragment", false);
-            assert_eq!(march.total().slots, fragment.unwrap().fragment.slots, "{gpu}");
+            assert_eq!(march.total().slots, f64::from(fragment.unwrap().slots.unwrap()), "{gpu}");
             assert_eq!(march.loops.len(), 3, "{gpu}: the second loop is the one inside of the first");
             assert!(march.loops.iter().all(|body| body.slots > 0.0), "{gpu}: {march:?}");
         }
-        assert_eq!(work("64/1"), Some(Work { slots: 64.0, fetches: 1.0 }));
-        assert_eq!((work("64"), work(">64/1")), (None, None));
     }
 
     #[test]

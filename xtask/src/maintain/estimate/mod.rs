@@ -1,20 +1,23 @@
-//! `cargo xtask maintain shader-cost`: the cost of the shader programs on mobile GPUs, by Mesa's compilers alone.
+//! `cargo xtask maintain estimate`: what whole frames cost on mobile GPUs that are not here, and the shaders' own costs.
 //!
 //! The library builds all programs in a context on this machine, `shader-programs` of tests/ prints their texts, and
-//! [`Compilers`] compile them. The results are compared with `app/lab/estimate/shader-cost.csv`. See docs/performance.md.
+//! [`Compilers`] compile them. The results are compared with `xtask/helpers/estimate/shader-cost.csv`, from which the
+//! program in that folder computes the cost of frames that it renders and counts. See docs/performance.md.
 
 mod compilers;
 mod gpus;
 mod listing;
+mod patches;
 mod table;
 
 use std::collections::VecDeque;
 use std::fs;
 use std::path::Path;
+use std::process::Stdio;
 use std::sync::Mutex;
 use std::thread;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, bail, ensure};
 use serde_json::Value;
 
 pub use compilers::Compilers;
@@ -25,10 +28,10 @@ use crate::folders::{root, write};
 
 use compilers::Run;
 use gpus::{GPUS, IN_TABLE};
-use table::{Row, Table};
+pub use table::{Row, Table};
 
 /// The committed table, relative to the workspace.
-const TABLE: &str = "app/lab/estimate/shader-cost.csv";
+const TABLE: &str = "xtask/helpers/estimate/shader-cost.csv";
 
 /// An accepted fault of a program on a GPU.
 struct Exception {
@@ -56,7 +59,7 @@ enum Fault {
 }
 
 /// The file that contains `EXCEPTIONS`, for messages.
-const EXCEPTIONS_IN: &str = "xtask/src/maintain/shader_cost/mod.rs";
+const EXCEPTIONS_IN: &str = "xtask/src/maintain/estimate/mod.rs";
 
 const EXCEPTIONS: [Exception; 1] = [Exception {
     gpu: "a650",
@@ -139,14 +142,29 @@ pub fn report(
     Ok((text, faults.is_empty()))
 }
 
-/// Returns the texts of all programs, as written by `shader-programs` of tests/.
+/// Returns the texts of all programs, as written by `shader-programs` of tests/, and of the march in parts.
 ///
 /// # Errors
 /// Fails if it does not compile or run.
 pub fn programs() -> anyhow::Result<Vec<Value>> {
     cargo::succeeds(&["xtask", "setup"], &[]);
     let text = cargo::output(&["run", "--quiet", "--package", "yoro-tests", "--bin", "shader-programs"])?;
-    serde_json::from_str(&text).context("shader-programs has written something else than a list of programs")
+    let programs = serde_json::from_str(&text);
+    let mut programs = programs.context("shader-programs has written something else than a list of programs")?;
+    patches::add_parts(&mut programs)?;
+    Ok(programs)
+}
+
+/// Returns what whole frames cost. `arguments` are those of the program in `xtask/helpers/estimate`.
+///
+/// # Errors
+/// Fails if it does not compile or run.
+pub fn frames(arguments: &[String]) -> anyhow::Result<String> {
+    let mut command = cargo::program("yoro-estimate")?;
+    command.args(arguments).env("YORO_SHADERS", patches::counting_shaders()?).stderr(Stdio::inherit());
+    let output = command.output().context("yoro-estimate cannot be started")?;
+    ensure!(output.status.success(), "yoro-estimate failed: see above");
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 fn chosen(mut programs: Vec<Value>, filter: Option<&str>) -> anyhow::Result<Vec<Value>> {

@@ -1,6 +1,6 @@
 //! What a tile-based GPU moves between its tiles and memory.
 //!
-//! It is derived from a [record](crate::Recorder) by these rules:
+//! It is derived from a record of a frame's commands by these rules:
 //!
 //! 1. Consecutive draw calls into one framebuffer are one piece of work, during which their images stay in the tiles.
 //! 2. An image is read into the tiles at the start unless it is cleared, or first drawn by a triangle that covers the
@@ -13,8 +13,8 @@
 
 use std::rc::Rc;
 
-use crate::record::{Command, Draw};
 use yoro_gl::{Aspect, Attachments, Format, Image, Shape};
+use yoro_test_support::record::{Command, Draw};
 
 /// The texture that every draw call reads at one place per fragment.
 const SHADOW_MAP: &str = "shadow_map";

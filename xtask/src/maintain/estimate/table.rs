@@ -1,4 +1,4 @@
-//! The rows of `app/lab/estimate/shader-cost.csv`: the cost of each compiled shader on each GPU.
+//! The rows of `shader-cost.csv`: the cost of each compiled shader on each GPU.
 
 use std::fmt::Write as _;
 use std::str::FromStr;
@@ -213,7 +213,7 @@ impl Table {
 
     /// Returns the table as the text that [`Table::parse`] reads.
     pub fn to_text(&self) -> String {
-        let mut text = format!("# Mesa {}; cargo xtask maintain shader-cost --bless\n{COLUMNS}\n", self.mesa);
+        let mut text = format!("# Mesa {}; cargo xtask maintain estimate --shaders --bless\n{COLUMNS}\n", self.mesa);
         let optional = |number: Option<u32>| number.map_or_else(String::new, |number| number.to_string());
         for row in &self.rows {
             // Writing to a string cannot fail.
