@@ -11,11 +11,11 @@ use yoro::opengl::{
 };
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
-use yoro_estimate::Recorder;
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
 use yoro_render::stereo::{self, ImBufferSize, Method, Paper, PaperOptions, StereoOptions};
 use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer};
 use yoro_shaders::{Assembled, MissingFile};
+use yoro_test_support::record::Recorder;
 
 use crate::{is_tested, scene};
 

@@ -1,4 +1,4 @@
-//! Prints the text of every shader program as JSON, for the compilers of `cargo xtask maintain shader-cost`.
+//! Prints the text of every shader program as JSON, for the compilers of `cargo xtask maintain estimate`.
 
 use std::collections::BTreeSet;
 use std::io;

@@ -1,5 +1,5 @@
 //! What the tests of several crates share: pictures, pipelines on OpenGL to compare with, laws that every pipeline keeps,
-//! a Vulkan device, a browser, and the shaders that are compiled in advance.
+//! a Vulkan device, a record of GPU commands, a browser, and the shaders that are compiled in advance.
 //!
 //! No crate of the product may depend on it.
 
@@ -14,4 +14,5 @@ pub mod in_memory;
 pub mod laws;
 pub mod modules;
 pub mod posed;
+pub mod record;
 pub mod table;

@@ -1,10 +1,10 @@
 //! Tests on a real GL context: golden images, shader variants and costs, GL objects.
 
-mod frame_passes;
 mod golden;
 mod methods;
 mod multiview;
 mod objects;
 mod refusals;
+mod record;
 mod shader_cost;
 mod shaders;

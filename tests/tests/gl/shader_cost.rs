@@ -1,7 +1,7 @@
 //! Compiles the synthesis programs for mobile GPUs.
 
 use serde_json::Value;
-use xtask::maintain::shader_cost::{Compilers, Options, report};
+use xtask::maintain::estimate::{Compilers, Options, report};
 use yoro_context::{Backend, Headless};
 use yoro_tests::programs::{self, Variants};
 

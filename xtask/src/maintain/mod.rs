@@ -1,10 +1,10 @@
 //! `cargo xtask maintain`: the commands that only maintainers run, and the programs that tests use.
 
 mod compile;
+pub mod estimate;
 pub(crate) mod godot;
 pub(crate) mod hello_xr;
 pub mod monado;
-pub mod shader_cost;
 
 use clap::Subcommand;
 
@@ -12,17 +12,22 @@ use crate::console;
 
 #[derive(Subcommand)]
 pub(crate) enum Task {
-    /// Print the cost of the shader programs on mobile GPUs, by Mesa's compilers: instructions, registers, waves,
-    /// fetches, spills
-    ShaderCost {
-        /// Only programs whose names contain this
-        filter: Option<String>,
-        /// These GPUs instead of those of app/lab/estimate/shader-cost.csv
-        #[arg(long = "gpu", value_name = "NAME", value_delimiter = ',')]
-        gpus: Vec<shader_cost::Gpu>,
-        /// Renew app/lab/estimate/shader-cost.csv
-        #[arg(long)]
+    /// Estimate what whole stereo frames cost on mobile GPUs that are not here: slots and bytes, from frames counted here
+    /// and shaders compiled by Mesa
+    Estimate {
+        /// Print the cost of the shaders themselves: instructions, registers, waves, fetches, spills; of all, or of
+        /// those whose names contain this
+        #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
+        shaders: Option<String>,
+        /// --shaders: these GPUs instead of those of shader-cost.csv
+        #[arg(long = "gpu", value_name = "NAME", value_delimiter = ',', requires = "shaders")]
+        gpus: Vec<estimate::Gpu>,
+        /// --shaders: renew xtask/helpers/estimate/shader-cost.csv
+        #[arg(long, requires = "shaders")]
         bless: bool,
+        /// Scenes, --width, --height, --viewpoints, --fov-y-degrees: see `cargo xtask maintain estimate -- --help`
+        #[arg(last = true, conflicts_with = "shaders")]
+        frames: Vec<String>,
     },
     /// Compile the synthesis shaders for Vulkan: app/engines/core/src/vulkan/spirv
     Spirv,
@@ -41,11 +46,12 @@ pub(crate) enum Task {
 /// Runs a task. Returns false if a shader has a fault.
 pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
     let (text, passed) = match task {
-        Task::ShaderCost { filter, gpus, bless } => {
-            let compilers = shader_cost::Compilers::make()?;
-            let options = shader_cost::Options { filter, gpus, bless };
-            shader_cost::report(&options, &compilers, shader_cost::programs()?)?
+        Task::Estimate { shaders: Some(filter), gpus, bless, .. } => {
+            let compilers = estimate::Compilers::make()?;
+            let filter = Some(filter).filter(|filter| !filter.is_empty());
+            estimate::report(&estimate::Options { filter, gpus, bless }, &compilers, estimate::programs()?)?
         }
+        Task::Estimate { frames, .. } => (estimate::frames(&frames)?, true),
         Task::Spirv => (compile::spirv()?, true),
         Task::Wgsl => (compile::wgsl()?, true),
         Task::Three => (compile::three()?, true),

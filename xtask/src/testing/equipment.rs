@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use anyhow::{Context as _, anyhow, bail};
 
-use crate::maintain::shader_cost::Compilers;
+use crate::maintain::estimate::Compilers;
 
 use super::binaries::Program;
 use super::summary::Summary;

@@ -53,9 +53,9 @@ fn is_convex(points: &[[f64; 2]]) -> bool {
 }
 
 /// Returns the triangles of a fan that differ in the places of their corners, or nothing if together they cover more
-/// than [`MOST_COVERED`] times the box around the polygon.
+/// than [`MAX_COVERED`] times the box around the polygon.
 fn different_triangles(points: &[[f64; 3]]) -> Vec<[u32; 3]> {
-    const MOST_COVERED: f64 = 32.0;
+    const MAX_COVERED: f64 = 32.0;
     let mut known = HashMap::new();
     let places: Vec<usize> = points
         .iter()
@@ -81,7 +81,7 @@ fn different_triangles(points: &[[f64; 3]]) -> Vec<[u32; 3]> {
     let all = || points.iter().copied().map(DVec3::from);
     let size = all().reduce(DVec3::max).unwrap_or_default() - all().reduce(DVec3::min).unwrap_or_default();
     let largest_side = (size.x * size.y).max(size.y * size.z).max(size.x * size.z);
-    if covered > MOST_COVERED * largest_side { Vec::new() } else { triangles }
+    if covered > MAX_COVERED * largest_side { Vec::new() } else { triangles }
 }
 
 /// True if a polygon has many corners and either goes round more than once, or has a crossing for every eighth edge.

@@ -37,7 +37,7 @@ const fn look(light: u32, dark: u32, shape: Shape) -> Look {
     Look { light, dark, shape, hollow: false }
 }
 
-/// The background of figures. Here and below: the colour on a light page, then on a dark one.
+/// The background of plots. Here and below: the colour on a light page, then on a dark one.
 pub const BACKGROUND: (u32, u32) = (0xFFFFFF, 0x1F2124);
 /// The colour of axes and their text.
 pub const TEXT: (u32, u32) = (0x1D1E20, 0xE6E6E3);
@@ -83,8 +83,16 @@ pub fn of(name: &str) -> Look {
     })
 }
 
-/// Returns every colour that a figure can have: on a light page and on a dark one.
-pub fn colors() -> Vec<(u32, u32)> {
+/// Returns the style sheet's rules that replace the colours of a light page by those of a dark one.
+pub(crate) fn css_rules() -> String {
+    let rule = |(light, dark)| {
+        format!("[fill=\"#{light:06X}\"]{{fill:#{dark:06X}}}[stroke=\"#{light:06X}\"]{{stroke:#{dark:06X}}}")
+    };
+    colors().into_iter().map(rule).collect()
+}
+
+/// Returns every colour that a plot can have: on a light page and on a dark one.
+fn colors() -> Vec<(u32, u32)> {
     let looks = LOOKS.iter().map(|(_, look)| look).chain(&OTHERS).map(|look| (look.light, look.dark));
     let mut all: Vec<(u32, u32)> = [BACKGROUND, TEXT, GRID].into_iter().chain(looks).collect();
     all.sort_unstable();

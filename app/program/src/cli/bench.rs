@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{bail, ensure};
+use clap::builder::{PossibleValue, PossibleValuesParser};
 
 use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs, Shard, parse_fov};
-use crate::cli::choices;
 use crate::cli::eyes;
 use crate::cli::machine;
 use crate::cli::settings::{Renderer, SettingOptions};
@@ -16,36 +16,30 @@ use yoro::eyes::{Eye, EyeOptions};
 use yoro_assets::load::sidecar_file;
 use yoro_bench::bench::record::{Header, PassClock, VERSION};
 use yoro_bench::bench::{
-    self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, process,
+    self, Bounds, Choices, Contender, EXPERIMENTS, Experiment, Inputs, Job, LazyObject, Object, Runner, Writer,
+    process,
 };
 use yoro_bench::inpaint::PatcherOptions;
-use yoro_bench::report::bench::BenchReport;
-use yoro_context::{Backend, Headless};
 use yoro_files::interrupt::Interrupted;
-use yoro_gl::{Capabilities, Context, GlApi};
+use yoro_gl::Context;
 use yoro_settings::Ipd;
-use yoro_viewer::render_settings;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
 #[derive(clap::Args, Clone, Debug)]
 pub struct BenchArgs {
     /// The experiments to run
-    #[arg(value_parser = choices::suite(), required = true, value_name = "SUITE")]
-    suites: Vec<Suite>,
+    #[arg(value_parser = suite_names(), required = true, value_name = "SUITE")]
+    suites: Vec<String>,
     /// The short form: smaller images, fewer scenes, points, viewpoints and rounds
     #[arg(long)]
     quick: bool,
-    /// shader-cost: whole stereo frames by two renders and synthesis on six mobile GPUs, in place of the synthesis alone. Counts
-    /// samples by desktop GL, so that the GL context comes from OSMesa unless --gl says otherwise
-    #[arg(long)]
-    frame: bool,
     /// Timed rounds; in each, every contender renders every frame once [default: 5; quick: 2]
     #[arg(long, value_name = "N", value_parser = args::whole::<u32>(1..=1000))]
     rounds: Option<u32>,
     /// Viewpoints of each scene, spread over its camera path [default: 3; quick: 1]
     #[arg(long, value_name = "N", value_parser = args::whole::<u32>(1..=64))]
     viewpoints: Option<u32>,
-    /// Size of each eye's image in pixels [default: 1024x1024; --frame: 1680x1760; quick: 512x512]
+    /// Size of each eye's image in pixels [default: 1024x1024; quick: 512x512]
     #[arg(long, value_name = "WxH", value_parser = eyes::parse_size)]
     size: Option<[u32; 2]>,
     /// Scenes instead of the suite's: a built-in one, or an OBJ, glTF or GLB file; more than once for several
@@ -102,7 +96,7 @@ pub struct BenchArgs {
 impl Subcommand for BenchArgs {
     /// Measures, appends to the file of results, and prints a short table.
     fn run(&self) -> anyhow::Result<()> {
-        let choices = self.choices()?;
+        let choices = self.choices();
         yoro_scenes::check(&choices.scenes, choices.seed)?;
         let path = self.path.as_deref().map(yoro_assets::path::read).transpose()?;
         if path.is_none() {
@@ -112,128 +106,84 @@ impl Subcommand for BenchArgs {
         let object = LazyObject::new(Box::new(|| object.unwrap_or_else(Object::hare)));
         let jobs = jobs(self, &choices, &object)?;
         let out = self.out();
-        // Outlines read samples, which other frames are recorded without. Contexts are open one at a time.
-        let (limited, whole): (Vec<Job>, Vec<Job>) = jobs.iter().cloned().partition(bench::is_limited);
-        let bar = progress_bar(jobs.iter().map(Job::steps).sum());
-        let mut file = None;
-        for (jobs, limit) in [(limited, bench::limit as fn(&mut Capabilities)), (whole, |_| {})] {
-            if jobs.is_empty() {
-                continue;
-            }
-            let headless = self.open(limit)?;
-            let gl = headless.gl();
-            let (writer, before) = match file.take() {
-                Some(file) => file,
-                None => Writer::open(&out, &header(self, &choices, gl))?,
-            };
-            let finished = jobs.iter().filter(|job| before.rounds(&job.conditions) >= job.rounds).count();
-            if finished > 0 {
-                log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
-            }
-            let bounds = Bounds {
-                memory_mib: self.max_memory_mib.map_or_else(
-                    || process::available_mib().map_or(f64::INFINITY, |available| 0.5 * available),
-                    |mib| mib as f64,
-                ),
+        let headless = self.gl.open()?;
+        let gl = headless.gl();
+        let (writer, before) = Writer::open(&out, &header(self, &choices, gl))?;
+        let finished = jobs.iter().filter(|job| before.rounds(&job.conditions) >= job.rounds).count();
+        if finished > 0 {
+            log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
+        }
+        let memory = || process::available_mib().map_or(f64::INFINITY, |available| 0.5 * available);
+        let inputs = Inputs {
+            choices: &choices,
+            object: &object,
+            path: path.as_deref(),
+            bounds: Bounds {
+                memory_mib: self.max_memory_mib.map_or_else(memory, |mib| mib as f64),
                 frame: Duration::from_millis(self.max_frame_ms),
-            };
-            let patchers = PatcherOptions { model: self.model.clone() };
-            let inputs =
-                Inputs { choices: &choices, object: &object, path: path.as_deref(), bounds, patchers };
-            let mut runner = Runner::new(gl, inputs, (writer, before), bar.clone());
-            for job in &jobs {
-                if let Err(error) = runner.run(job) {
-                    bar.finish_and_clear();
-                    if error.is::<Interrupted>() {
-                        bail!(
-                            "interrupted: the finished rounds are in {}; the same command with --out {} goes on",
-                            out.display(),
-                            out.display()
-                        );
-                    }
-                    return Err(error.context(format!("cannot measure {}", job.conditions)));
+            },
+            patchers: PatcherOptions { model: self.model.clone() },
+        };
+        let bar = progress_bar(jobs.iter().map(|job| job.experiment.steps(job)).sum());
+        let mut runner = Runner::new(gl, inputs, (writer, before), bar.clone());
+        for job in &jobs {
+            if let Err(error) = runner.run(job) {
+                bar.finish_and_clear();
+                if error.is::<Interrupted>() {
+                    bail!(
+                        "interrupted: the finished rounds are in {}; the same command with --out {} goes on",
+                        out.display(),
+                        out.display()
+                    );
                 }
+                return Err(error.context(format!("cannot measure {}", job.conditions)));
             }
-            file = Some(runner.finish());
         }
-        drop(file);
         bar.finish_and_clear();
-        let results = bench::Results::read(&out)?;
-        if self.frame {
-            print!("{}", BenchReport::new(vec![results])?.to_markdown());
-        } else {
-            print!("{}", bench::text(&results));
-        }
+        print!("{}", bench::text(&bench::Results::read(&out)?));
         println!("results: {}", out.display());
         Ok(())
     }
 }
 
 impl BenchArgs {
-    fn open(&self, limit: fn(&mut Capabilities)) -> anyhow::Result<Headless> {
-        if !self.frame {
-            return Ok(self.gl.open()?);
+    fn choices(&self) -> Choices {
+        fn of<T>(is_quick: bool, full: T, quick: T) -> T {
+            if is_quick { quick } else { full }
         }
-        ensure!(
-            self.suites == [Suite::ShaderCost],
-            "--frame belongs to the suite shader-cost alone: run yoro bench shader-cost --frame"
-        );
-        let backend = match self.gl.backend {
-            Backend::Auto => Backend::Osmesa,
-            given => given,
-        };
-        let headless = Headless::open_limited(backend, limit)?;
-        log::info!("{}", headless.gl().capabilities().summary());
-        ensure!(
-            headless.gl().capabilities().api == GlApi::Desktop,
-            "shader-cost --frame counts samples, which OpenGL ES does not: give --gl osmesa"
-        );
-        Ok(headless)
-    }
-
-    fn choices(&self) -> anyhow::Result<Choices> {
-        let of = |full, quick| if self.quick { quick } else { full };
         let eyes = EyeOptions {
-            size: self.size.unwrap_or(match (self.quick, self.frame) {
-                (true, _) => [512; 2],
-                (false, true) => yoro_estimate::SIZE,
-                (false, false) => [1024; 2],
-            }),
+            size: self.size.unwrap_or(of(self.quick, [1024; 2], [512; 2])),
             fov_y: self.fov_y,
             ipd: self.ipd.metres(),
             dominant: self.dominant,
             ..EyeOptions::default()
         };
-        Ok(Choices {
+        Choices {
             quick: self.quick,
-            whole_frames: self.frame,
             eyes,
-            // Phones render with the viewer's settings.
-            render: if self.frame {
-                render_settings(self.renderer.settings(), None)
-            } else {
-                self.renderer.render_settings()
-            },
-            rounds: self.rounds.unwrap_or(of(5, 2)),
-            viewpoints: self.viewpoints.unwrap_or(of(3, 1)) as usize,
+            render: self.renderer.render_settings(),
+            rounds: self.rounds.unwrap_or(of(self.quick, 5, 2)),
+            viewpoints: self.viewpoints.unwrap_or(of(self.quick, 3, 1)) as usize,
             scenes: self.scenes.clone(),
             contenders: self.contenders.clone(),
             seed: self.seed,
             object: self.object.clone(),
-            max_triangles: self.max_triangles.map_or(of(13_104_000, 1_500_000) as usize, |n| n as usize),
+            max_triangles: self.max_triangles.map_or(of(self.quick, 13_104_000, 1_500_000), |n| n as usize),
+        }
+    }
+
+    /// Returns the chosen experiments.
+    fn experiments(&self) -> impl Iterator<Item = &'static dyn Experiment> {
+        self.suites.iter().flat_map(|name| {
+            EXPERIMENTS.into_iter().filter(move |experiment| name == ALL || name == experiment.name())
         })
     }
 
-    fn suite_names(&self) -> Vec<String> {
-        self.suites.iter().map(|suite| suite.name().to_owned()).collect()
-    }
-
     fn out(&self) -> PathBuf {
-        let frame = if self.frame { "-frame" } else { "" };
         let quick = if self.quick { "-quick" } else { "" };
         let shard = self.shard.map(|shard| format!("-{shard}").replace('/', "of")).unwrap_or_default();
-        let suites = self.suite_names().join("-");
-        let default = || Path::new("out").join(format!("bench-{suites}{frame}{quick}{shard}.jsonl"));
+        let suites = self.suites.join("-");
+        let default = || Path::new("out").join(format!("bench-{suites}{quick}{shard}.jsonl"));
         self.out.clone().unwrap_or_else(default)
     }
 }
@@ -252,8 +202,8 @@ fn warn_without_camera(scene: &Path) {
 /// Returns the settings of all suites, each once.
 fn jobs(args: &BenchArgs, choices: &Choices, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
     let mut jobs: Vec<Job> = Vec::new();
-    for suite in &args.suites {
-        for job in choices.jobs(*suite, object)? {
+    for experiment in args.experiments() {
+        for job in experiment.jobs(choices, object)? {
             let twin = jobs.iter().find(|other| other.conditions == job.conditions);
             ensure!(
                 twin.is_none(),
@@ -281,12 +231,21 @@ fn header(args: &BenchArgs, choices: &Choices, gl: &Context) -> Header {
     file("model", &args.model);
     Header {
         yoro_bench: VERSION,
-        suites: args.suite_names(),
+        suites: args.suites.clone(),
         quick: args.quick,
         machine: machine::describe(gl.capabilities()),
         pass_clock: if gl.capabilities().timer_queries { PassClock::TimerQueries } else { PassClock::Finish },
         parameters,
     }
+}
+
+/// The name of all suites together.
+const ALL: &str = "all";
+
+/// Accepts the names of suites, with a line of help for each.
+fn suite_names() -> PossibleValuesParser {
+    let each = EXPERIMENTS.into_iter().map(|each| PossibleValue::new(each.name()).help(each.about()));
+    PossibleValuesParser::new(each.chain([PossibleValue::new(ALL).help("All of them, one after the other")]))
 }
 
 fn parse_contender(text: &str) -> Result<Contender, String> {

@@ -2,7 +2,6 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use yoro_assets::ShadingStyle;
-use yoro_bench::bench::Suite;
 use yoro_bench::inpaint::PatcherKind;
 use yoro_context::Backend;
 
@@ -52,9 +51,4 @@ pub fn patcher() -> impl TypedValueParser<Value = PatcherKind> {
         PatcherKind::NavierStokes => "Isophotes carried on (Bertalmio et al. 2001), on the CPU",
         PatcherKind::Neural => "A small neural network from an ONNX file, on the CPU",
     })
-}
-
-/// Parses the suites of `yoro bench`.
-pub fn suite() -> impl TypedValueParser<Value = Suite> {
-    choice(Suite::EACH.iter().copied().chain([Suite::All]), Suite::name, Suite::about)
 }

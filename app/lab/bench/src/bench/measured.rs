@@ -1,18 +1,9 @@
 //! Conversion of a comparison's metrics into those of a measurement.
 
-use super::record::{Conditions, Measurement, metric};
+use super::record::{Measurement, metric};
 use yoro_metrics::{Comparison, Flicker, PartQuality};
 
 impl Measurement {
-    pub(super) fn new(conditions: &Conditions, contender: impl Into<String>, round: u32) -> Measurement {
-        Measurement {
-            conditions: conditions.clone(),
-            contender: contender.into(),
-            round,
-            values: Default::default(),
-        }
-    }
-
     pub(super) fn push_comparison(&mut self, comparison: &Comparison) {
         let Comparison { rgb, luma, .. } = comparison;
         self.push(metric::PSNR, rgb.psnr.0);

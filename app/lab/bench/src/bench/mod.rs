@@ -1,38 +1,77 @@
 //! `yoro bench`: every method, patcher and parameter of the paper, measured side by side.
 //!
-//! A [`Suite`] is a list of [jobs](Job): each is a scene and, in a sweep, one point of it. In each round of a job every
-//! [`Contender`] takes its turn, and the finished round is appended to a file of [records](record). Quality is always
-//! measured against a real render of the same eye, and shown beside "the same image to both eyes"
-//! ([`Contender::MONO`]); cost is compared with two full renders ([`Contender::CONVENTIONAL`]).
+//! An [`Experiment`] plans [jobs](Job), each of which is a scene and, in a sweep, one point of it. In each round of a job
+//! every [`Contender`] takes its turn, and the finished round is appended to a file of [records](record), which are all
+//! that the report knows. Quality is always measured against a real render of the same eye, and shown beside "the same
+//! image to both eyes" ([`Contender::MONO`]); cost is compared with two full renders ([`Contender::CONVENTIONAL`]).
 
 mod blank;
 mod contender;
-mod frame;
+mod frames;
 mod holes;
 mod job;
 mod measured;
-mod motion;
 mod pictures;
-mod prepared;
 pub mod process;
 pub mod record;
+mod report;
+#[cfg(test)]
+mod report_tests;
+mod results;
 mod runner;
 mod scenes;
-mod suite;
+mod subject;
+mod suites;
 mod summary;
+mod tables;
 mod views;
+
+use yoro_render::PreparedScene;
+use yoro_report::Section;
 
 pub use blank::{Blank, BlankFinder, BlankView};
 pub use contender::Contender;
-pub use frame::{SUITE as FRAME_SUITE, is_limited, limit};
 pub use holes::HoleFinder;
-pub use job::{Job, Measure, Source, TargetPose};
-pub use motion::Motion;
+pub use job::{Choices, Job, Source};
 pub use pictures::{picture_folder, pictures_beside};
-pub use prepared::{FrameTime, PreparedContender};
 pub use record::{Conditions, Measurement, Record, RecordError, Results, Writer, metric};
+pub use report::{BenchReport, BenchReportError};
+pub use results::{Measured, SettingData, Spread, SuiteData};
 pub use runner::{Bounds, Inputs, Runner};
 pub use scenes::{LazyObject, Object};
-pub use suite::{Choices, Suite};
+pub use subject::{FrameTime, Subject};
+pub use suites::EXPERIMENTS;
 pub use summary::text;
 pub use views::spread;
+
+/// A suite of `yoro bench`: what it measures, and how its results are shown.
+pub trait Experiment: Sync {
+    /// Returns the name on the command line and in files.
+    fn name(&self) -> &'static str;
+
+    /// Returns what it measures, in a line.
+    fn about(&self) -> &'static str;
+
+    /// Returns the settings in the order of measurement: those that share a scene follow each other. `object` is the
+    /// object of the suites `distance` and `complexity`.
+    ///
+    /// # Errors
+    /// One sentence if the choices leave nothing to measure.
+    fn jobs(&'static self, choices: &Choices, object: &LazyObject) -> anyhow::Result<Vec<Job>>;
+
+    /// Measures the rounds of a job that are not yet measured.
+    ///
+    /// # Errors
+    /// As [`Runner::run`].
+    fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()>;
+
+    /// Returns the number of steps of progress of a job: by default the preparation and the frames of each contender.
+    fn steps(&self, job: &Job) -> u64 {
+        (u64::from(job.rounds) * job.frames as u64 + 1) * job.contenders.len() as u64
+    }
+
+    /// Returns the sections of the report: by default a table of all means.
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        vec![tables::everything(self.name(), self.about(), suite)]
+    }
+}

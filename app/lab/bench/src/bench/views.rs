@@ -1,9 +1,9 @@
-//! The viewpoints of a setting's frames.
+//! The viewpoints of a setting's frames, and the motion of the head in sequences.
 
 use anyhow::{bail, ensure};
+use glam::{Quat, Vec3};
 
 use super::job::{Job, Source};
-use super::motion::Motion;
 use super::record::SceneFacts;
 use yoro::eyes::{EyePair, Pose};
 use yoro_assets::CameraPath;
@@ -18,6 +18,9 @@ pub(super) const STEP_RATE: f64 = 30.0;
 pub(super) const HEADSET_STEP: f32 = 0.01875;
 /// The frame rate of a headset in Hz.
 pub(super) const HEADSET_RATE: f64 = 72.0;
+
+/// The number of frames from one measured frame of a motion to the next, so that they are not alike.
+pub(super) const SPREAD: usize = 9;
 
 /// The number of frames for which a head moves before the first one.
 const UNDER_WAY: usize = 12;
@@ -85,13 +88,6 @@ impl Views {
         Ok(Views { names, pairs: poses.into_iter().map(|pose| job.eyes.pair(pose)).collect() })
     }
 
-    /// Returns the first frame alone.
-    pub fn first(mut self) -> Views {
-        self.names.truncate(1);
-        self.pairs.truncate(1);
-        self
-    }
-
     /// Returns the facts that the results record about the scene and these frames.
     pub fn facts(&self, job: &Job, prepared: &PreparedScene) -> SceneFacts {
         let scene = &prepared.scene;
@@ -107,10 +103,62 @@ impl Views {
     }
 }
 
+/// The motion of a head.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Motion {
+    /// Swaying while seated: 3.2 cm and 9.5 degrees to either side, with a period of two seconds.
+    Sway,
+    /// Walking along the camera path at 1.35 m/s.
+    Walk,
+    /// Not moving.
+    Still,
+    /// Stepping aside, to the right, at 1 m/s.
+    Strafe,
+    /// Turning to the left at 60 degrees per second, about a neck 10 cm behind the eyes.
+    Turn,
+    /// Leaning forwards and back by 20 cm, with a period of 1.5 seconds: up to 0.84 m/s.
+    Reach,
+}
+
+impl Motion {
+    /// Returns the name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Motion::Sway => "sway",
+            Motion::Walk => "walk",
+            Motion::Still => "still",
+            Motion::Strafe => "strafe",
+            Motion::Turn => "turn",
+            Motion::Reach => "reach",
+        }
+    }
+
+    /// Returns the pose after a time in seconds of a head that was at rest before; `None` for a walking head.
+    fn pose(self, from: Pose, seconds: f32) -> Option<Pose> {
+        use std::f32::consts::{PI, TAU};
+        match self {
+            Motion::Walk => None,
+            Motion::Still => Some(from),
+            Motion::Sway => {
+                let wave = (PI * seconds).sin();
+                let moved = from.translated_local(Vec3::X * (0.032 * wave));
+                let turn = Quat::from_rotation_y(-(9.5 * wave).to_radians());
+                Some(Pose { orientation: turn * moved.orientation, ..moved })
+            }
+            Motion::Strafe => Some(from.translated_local(Vec3::X * seconds)),
+            Motion::Turn => {
+                let neck = from.translated_local(Vec3::Z * 0.1);
+                let turn = Quat::from_rotation_y((60.0 * seconds - 20.0).to_radians());
+                let turned = Pose { orientation: turn * neck.orientation, ..neck };
+                Some(turned.translated_local(Vec3::NEG_Z * 0.1))
+            }
+            Motion::Reach => Some(from.translated_local(Vec3::NEG_Z * (0.2 * (TAU * seconds / 1.5).sin()))),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
 
     #[test]

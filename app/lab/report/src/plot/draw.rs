@@ -1,354 +1,369 @@
-//! Drawing with plotters.
+//! Drawing with plotters, in the colours of the light page.
+
+use std::ops::Range;
 
 use plotters::coord::Shift;
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged};
 use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use serde::Serialize;
 
-use super::axis::{Range, tick_label};
-use super::{Axis, DotRow, Figure, LegendEntry, Panel, Series};
+use super::{Axis, Entry, Plot, Point, Style};
 use crate::palette::{self, Look, Shape};
-use crate::stats::percentile;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type DrawingResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scaled, Scaled>>;
+type DrawingResult<T> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
 
-/// Width of all figures in SVG units: two per CSS pixel at natural size, because plotters rounds to whole units.
-const WIDTH: i32 = 1200;
-const EM: i32 = 26;
-pub(super) const LINE: i32 = 38;
-const MARK: i32 = 9;
-pub(super) const MARGIN: i32 = 24;
-pub(super) const CURVES_HEIGHT: i32 = 560;
-const ROW_HEIGHT: i32 = 50;
+/// Width of all plots in SVG units: about two per CSS pixel, because plotters rounds to whole units.
+const WIDTH: u32 = 840;
+const EM: i32 = 24;
+const MARK: i32 = 8;
+const CURVES_HEIGHT: i32 = 440;
+const ROW_HEIGHT: i32 = 42;
 /// Distance between the marks of one row that have intervals.
-pub(super) const LANE: i32 = 26;
-/// Number of characters that fit to the left of a dot plot.
-const LABEL: usize = 20;
+const LANE: i32 = 24;
+/// Number of characters that fit to the left of the rows.
+const LABEL: usize = 19;
 
-/// Draws a figure as an SVG document.
-pub(super) fn draw(figure: &Figure, svg: &mut String) -> DrawingResult {
-    let legend = figure.legend();
-    let lines = legend_lines(&legend);
-    let top = MARGIN + lines.len() as i32 * LINE + LINE / 2;
-    let (left, height) = match &figure.panel {
-        Panel::Curves { .. } | Panel::Traces { .. } | Panel::Paired { .. } => (6 * EM, CURVES_HEIGHT),
-        Panel::Dots { rows, .. } => {
-            (LABEL as i32 * EM * 6 / 10, rows.iter().map(row_height).sum::<i32>().max(ROW_HEIGHT))
-        }
-    };
-    let bottom = top + height;
-    let size = (WIDTH as u32, (bottom + 2 * LINE + MARGIN) as u32);
-    let root = SVGBackend::with_string(svg, size).into_drawing_area();
-    root.fill(&rgb(palette::BACKGROUND.0))?;
-    draw_legend(&root, &lines, !matches!(figure.panel, Panel::Traces { .. }))?;
-    let frame = Frame { left, right: WIDTH - 2 * MARGIN, top, bottom };
-    match &figure.panel {
-        Panel::Curves { x, y, series } => draw_curves(&root, &frame, x, y, series, true)?,
-        Panel::Traces { x, y, series } => draw_curves(&root, &frame, x, y, series, false)?,
-        Panel::Paired { value, methods, persons } => {
-            draw_paired(&root, &frame, value, methods, persons)?;
-        }
-        Panel::Dots { value, rows } => draw_dots(&root, &frame, value, rows)?,
-    }
-    root.present()
+/// A plot as drawn.
+pub(super) struct Drawing {
+    /// The SVG document. The marks of each entry of the legend are a group with the attribute `data-series`.
+    pub svg: String,
+    /// A small SVG document with the mark of each entry of the legend.
+    pub swatches: Vec<String>,
+    /// All points.
+    pub points: Vec<Place>,
 }
 
-/// The plotting area in SVG units.
-struct Frame {
-    left: i32,
-    right: i32,
-    top: i32,
-    bottom: i32,
+/// A point and its place.
+#[derive(Serialize)]
+pub(super) struct Place {
+    /// The number of its entry in the legend.
+    series: usize,
+    /// The place in SVG units.
+    at: (i32, i32),
+    x: f64,
+    /// The value on the vertical axis, or the number of the row.
+    y: f64,
+    /// The ends of the interval of x.
+    interval: Option<[f64; 2]>,
+}
+
+/// The scale of an axis.
+#[derive(Clone)]
+enum Scaled {
+    Linear(RangedCoordf64),
+    /// The natural logarithm of the values.
+    Logarithmic(RangedCoordf64),
+    /// This many rows from top to bottom.
+    Rows(usize),
+}
+
+impl Scaled {
+    /// Returns a scale that fits an axis and the values on it.
+    fn of(axis: &Axis, values: impl Iterator<Item = f64>) -> Scaled {
+        let drawable = |v: &f64| v.is_finite() && (!axis.logarithmic || *v > 0.0);
+        let scaled = |v: f64| if axis.logarithmic { v.ln() } else { v };
+        let all = values.chain(axis.include.iter().copied()).filter(drawable).map(scaled);
+        let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
+        let margin = if low < high { 0.06 * (high - low) } else { (0.1 * low.abs()).max(0.1) };
+        // An axis that starts or ends at zero does so exactly.
+        let is_exact = |end: f64| end == 0.0 && !axis.logarithmic;
+        let low = if is_exact(low) { low } else { low - margin };
+        let high = if is_exact(high) { high } else { high + margin };
+        match axis.logarithmic {
+            true => Scaled::Logarithmic((low..high).into()),
+            false => Scaled::Linear((low..high).into()),
+        }
+    }
+}
+
+impl Ranged for Scaled {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        match self {
+            Scaled::Linear(range) => range.map(value, limit),
+            Scaled::Logarithmic(range) => range.map(&value.max(f64::MIN_POSITIVE).ln(), limit),
+            Scaled::Rows(count) => {
+                RangedCoordf64::from(0.0..(*count).max(1) as f64).map(&(value + 0.5), (limit.1, limit.0))
+            }
+        }
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        match self {
+            Scaled::Linear(range) => range.key_points(hint),
+            Scaled::Logarithmic(range) => {
+                let Range { start, end } = range.range();
+                let steps: &[f64] = if end - start < 4.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+                let powers = (start / 10f64.ln()).floor() as i32..=(end / 10f64.ln()).ceil() as i32;
+                let all = powers.flat_map(|power| steps.iter().map(move |step| step * 10f64.powi(power)));
+                all.filter(|value| (start..=end).contains(&value.ln())).collect()
+            }
+            Scaled::Rows(count) => (0..*count).map(|row| row as f64).collect(),
+        }
+    }
+
+    fn range(&self) -> Range<f64> {
+        match self {
+            Scaled::Linear(range) => range.range(),
+            Scaled::Logarithmic(range) => range.range().start.exp()..range.range().end.exp(),
+            Scaled::Rows(count) => -0.5..*count as f64 - 0.5,
+        }
+    }
+}
+
+impl plotters::coord::ranged1d::ValueFormatter<f64> for Scaled {
+    fn format(value: &f64) -> String {
+        let text = format!("{value:.6}");
+        let text = text.trim_end_matches('0').trim_end_matches('.');
+        if text == "-0" { "0".into() } else { text.into() }
+    }
+}
+
+/// Draws a plot: axes, then a layer for each entry of the legend, so that the page can hide one.
+pub(super) fn draw(plot: &Plot, with_legend: bool) -> DrawingResult<Drawing> {
+    let legend = plot.legend();
+    let mut points = Vec::new();
+    let mut body = layer(plot, |root, chart| {
+        root.fill(&rgb(palette::BACKGROUND.0))?;
+        draw_axes(plot, chart)?;
+        if with_legend { draw_legend(&legend, chart) } else { Ok(()) }
+    })?;
+    // The first entry comes last, on top of others with equal figures.
+    for (i, entry) in legend.iter().enumerate().rev() {
+        let marks = layer(plot, |root, chart| {
+            for series in plot.series.iter().filter(|series| series.entry == **entry) {
+                let offset = lane_offset(plot, i, legend.len());
+                points.extend(draw_points(plot, entry, &series.points, offset, root, chart)?.map(
+                    |(point, at)| Place {
+                        series: i,
+                        at,
+                        x: point.x,
+                        y: point.y,
+                        interval: point.interval.map(|found| [found.low, found.high]),
+                    },
+                ));
+            }
+            Ok(())
+        })?;
+        body += &format!("<g data-series=\"{i}\">\n{marks}</g>\n");
+    }
+    let height = height(plot);
+    let svg = format!(
+        "<svg viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
+         xmlns=\"http://www.w3.org/2000/svg\">\n{body}</svg>\n"
+    );
+    let swatches = legend.iter().map(|entry| swatch(plot, entry)).collect::<DrawingResult<_>>()?;
+    Ok(Drawing { svg, swatches, points })
+}
+
+fn has_intervals(plot: &Plot) -> bool {
+    plot.series.iter().flat_map(|series| &series.points).any(|point| point.interval.is_some())
+}
+
+/// Returns the height of a row, in which marks with intervals lie below each other.
+fn row_height(plot: &Plot) -> i32 {
+    let lanes = if has_intervals(plot) { plot.legend().len() as i32 + 1 } else { 0 };
+    ROW_HEIGHT.max(lanes * LANE)
+}
+
+fn height(plot: &Plot) -> u32 {
+    let inside = if plot.rows.is_empty() { CURVES_HEIGHT } else { plot.rows.len() as i32 * row_height(plot) };
+    (inside + EM * 4) as u32
+}
+
+/// Returns how far below the middle of its row an entry's marks lie, in SVG units.
+fn lane_offset(plot: &Plot, entry: usize, entries: usize) -> i32 {
+    if !has_intervals(plot) || plot.rows.is_empty() {
+        return 0;
+    }
+    (2 * entry as i32 - entries as i32 + 1) * LANE / 2
+}
+
+/// Returns the elements that `draw` draws on a plot's area, without the document around them.
+fn layer(
+    plot: &Plot,
+    draw: impl FnOnce(&Area, &mut Chart) -> DrawingResult<()>,
+) -> DrawingResult<String> {
+    let mut svg = String::new();
+    let root = SVGBackend::with_string(&mut svg, (WIDTH, height(plot))).into_drawing_area();
+    let points = || plot.series.iter().flat_map(|series| &series.points).filter(|point| point.is_finite());
+    let ends = points().filter_map(|point| point.interval).flat_map(|found| [found.low, found.high]);
+    let x = Scaled::of(&plot.x, points().map(|point| point.x).chain(ends));
+    let (y, left) = match plot.rows.len() {
+        0 => (Scaled::of(&plot.y, points().map(|point| point.y)), 4 * EM),
+        rows => (Scaled::Rows(rows), LABEL as i32 * EM * 55 / 100),
+    };
+    let mut chart = ChartBuilder::on(&root)
+        .margin(EM / 2)
+        .margin_right(EM)
+        .x_label_area_size(5 * EM / 2)
+        .y_label_area_size(left)
+        .build_cartesian_2d(x, y)?;
+    draw(&root, &mut chart)?;
+    root.present()?;
+    drop(chart);
+    drop(root);
+    let start = svg.find('>').map_or(0, |end| end + 1);
+    Ok(svg[start..].trim_end().trim_end_matches("</svg>").trim_start().to_owned())
 }
 
 fn rgb(color: u32) -> RGBColor {
     RGBColor((color >> 16) as u8, (color >> 8) as u8, color as u8)
 }
 
-fn text(size: i32, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
+fn text() -> TextStyle<'static> {
     // The backend divides font sizes by 1.24.
-    let style: TextStyle = ("sans-serif", f64::from(size) * 1.24).into_text_style(&(0, 0));
-    let color = rgb(palette::TEXT.0).to_backend_color();
-    TextStyle { color, ..style }.pos(Pos::new(horizontal, vertical))
+    let style: TextStyle = ("sans-serif", f64::from(EM) * 1.24).into_text_style(&(0, 0));
+    TextStyle { color: rgb(palette::TEXT.0).to_backend_color(), ..style }
 }
 
-fn text_width(text: &str) -> i32 {
-    text.chars().count() as i32 * EM * 56 / 100
-}
-
-fn legend_lines(legend: &[LegendEntry]) -> Vec<Vec<(i32, LegendEntry)>> {
-    let mut lines = vec![Vec::new()];
-    let mut x = MARGIN;
-    for entry in legend {
-        let width = 3 * EM + text_width(&entry.2) + EM;
-        if x + width > WIDTH - MARGIN && x > MARGIN {
-            lines.push(Vec::new());
-            x = MARGIN;
-        }
-        if let Some(line) = lines.last_mut() {
-            line.push((x, entry.clone()));
-        }
-        x += width;
+fn draw_axes(plot: &Plot, chart: &mut Chart) -> DrawingResult<()> {
+    let grid = rgb(palette::GRID.0);
+    let name = |row: &f64| shortened(plot.rows.get(*row as usize).map_or("", String::as_str));
+    let mut mesh = chart.configure_mesh();
+    mesh.x_desc(&plot.x.name)
+        .x_labels(7)
+        .y_labels(7)
+        .max_light_lines(1)
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(grid.stroke_width(2))
+        .axis_style(grid.stroke_width(2))
+        .set_all_tick_mark_size(6)
+        .label_style(text())
+        .axis_desc_style(text());
+    if plot.rows.is_empty() {
+        mesh.y_desc(&plot.y.name);
+    } else {
+        mesh.y_labels(plot.rows.len()).y_label_formatter(&name);
     }
-    lines
-}
-
-fn draw_legend(root: &Area, lines: &[Vec<(i32, LegendEntry)>], marks: bool) -> DrawingResult {
-    for (i, line) in lines.iter().enumerate() {
-        let y = MARGIN + i as i32 * LINE + LINE / 2;
-        for (x, (method, papers, label)) in line {
-            let look = palette::of(method);
-            stroke(root, vec![(*x, y), (x + 2 * EM, y)], &look, *papers)?;
-            if marks {
-                mark(root, (x + EM, y), &look, *papers)?;
-            }
-            root.draw_text(label, &text(EM, HPos::Left, VPos::Center), (x + 2 * EM + EM / 2, y))?;
-        }
-    }
+    mesh.draw()?;
+    let ([x, y], line) = ([chart.x_range(), chart.y_range()], rgb(palette::TEXT.0).stroke_width(3));
+    let across = |value: &f64| PathElement::new(vec![(*value, y.start), (*value, y.end)], line);
+    chart.draw_series(plot.x.lines_at.iter().map(across))?;
+    let along = |value: &f64| PathElement::new(vec![(x.start, *value), (x.end, *value)], line);
+    chart.draw_series(plot.y.lines_at.iter().map(along))?;
     Ok(())
+}
+
+/// Draws the legend of a document's picture inside the plot.
+fn draw_legend(legend: &[&Entry], chart: &mut Chart) -> DrawingResult<()> {
+    for entry in legend {
+        let (look, papers) = (palette::of(&entry.method), entry.papers);
+        chart
+            .draw_series(std::iter::empty::<PathElement<(f64, f64)>>())?
+            .label(&entry.label)
+            .legend(move |(x, y)| Polygon::new(outline(&look, (x + EM, y)), style(&look, papers)));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .legend_area_size(2 * EM)
+        .background_style(rgb(palette::BACKGROUND.0).filled())
+        .label_font(text())
+        .draw()
+}
+
+/// Draws the points of a series, and returns those that are finite with their places in SVG units.
+fn draw_points<'p>(
+    plot: &Plot,
+    entry: &Entry,
+    points: &'p [Point],
+    offset: i32,
+    root: &Area,
+    chart: &Chart,
+) -> DrawingResult<impl Iterator<Item = (&'p Point, (i32, i32))> + use<'p>> {
+    let look = palette::of(&entry.method);
+    let at = |x: f64, y: f64| {
+        let (x, y) = chart.backend_coord(&(x, y));
+        (x, y + offset)
+    };
+    let finite: Vec<_> = points.iter().filter(|p| p.is_finite()).map(|p| (p, at(p.x, p.y))).collect();
+    match plot.style {
+        Style::Traces => {
+            for piece in points.split(|point| !point.is_finite()) {
+                let piece: Vec<_> = piece.iter().map(|point| at(point.x, point.y)).collect();
+                root.draw(&PathElement::new(piece, rgb(look.light).stroke_width(2)))?;
+            }
+            return Ok(finite.into_iter());
+        }
+        Style::Curves if finite.len() > 1 => {
+            draw_stroke(root, finite.iter().map(|(_, at)| *at).collect(), &look, entry.papers)?;
+        }
+        Style::Curves | Style::Points => {}
+    }
+    for (point, place) in &finite {
+        if let Some(interval) = point.interval {
+            let bar = vec![at(interval.low, point.y), at(interval.high, point.y)];
+            draw_stroke(root, bar, &look, entry.papers)?;
+        }
+        draw_mark(root, *place, &look, entry.papers)?;
+    }
+    Ok(finite.into_iter())
 }
 
 /// Draws the line of a method, dashed for the paper's figures.
-fn stroke(root: &Area, points: Vec<(i32, i32)>, look: &Look, papers: bool) -> DrawingResult {
+fn draw_stroke(root: &Area, points: Vec<(i32, i32)>, look: &Look, papers: bool) -> DrawingResult<()> {
     let style = rgb(look.light).stroke_width(4);
-    if papers {
-        root.draw(&DashedPathElement::new(points, 14, 9, style))
-    } else {
-        root.draw(&PathElement::new(points, style))
+    match papers {
+        true => root.draw(&DashedPathElement::new(points, 14, 9, style)),
+        false => root.draw(&PathElement::new(points, style)),
     }
+}
+
+fn style(look: &Look, papers: bool) -> ShapeStyle {
+    if papers || look.hollow { rgb(palette::BACKGROUND.0).filled() } else { rgb(look.light).filled() }
 }
 
 /// Draws the mark of a method, hollow for the paper's figures.
-fn mark(root: &Area, (x, y): (i32, i32), look: &Look, papers: bool) -> DrawingResult {
-    let hollow = papers || look.hollow;
-    let (color, background) = (rgb(look.light), rgb(palette::BACKGROUND.0));
-    let outline = |r: i32| -> Vec<(i32, i32)> {
-        let corners: &[(i32, i32)] = match look.shape {
-            Shape::Circle => &[],
-            Shape::Square => &[(-9, -9), (9, -9), (9, 9), (-9, 9)],
-            Shape::Diamond => &[(0, -13), (13, 0), (0, 13), (-13, 0)],
-            Shape::Up => &[(0, -12), (12, 9), (-12, 9)],
-            Shape::Down => &[(0, 12), (12, -9), (-12, -9)],
-            Shape::Cross => &[
-                (-10, -5),
-                (-5, -10),
-                (0, -5),
-                (5, -10),
-                (10, -5),
-                (5, 0),
-                (10, 5),
-                (5, 10),
-                (0, 5),
-                (-5, 10),
-                (-10, 5),
-                (-5, 0),
-            ],
-        };
-        corners.iter().map(|(dx, dy)| (x + dx * r / MARK, y + dy * r / MARK)).collect()
+fn draw_mark(root: &Area, at: (i32, i32), look: &Look, papers: bool) -> DrawingResult<()> {
+    let mut outline = outline(look, at);
+    root.draw(&Polygon::new(outline.clone(), style(look, papers)))?;
+    outline.extend_from_within(..2);
+    root.draw(&PathElement::new(outline, rgb(look.light).stroke_width(4)))
+}
+
+fn outline(look: &Look, (x, y): (i32, i32)) -> Vec<(i32, i32)> {
+    let circle = || (0..20).map(|i| (f64::from(i) * std::f64::consts::PI / 10.0).sin_cos());
+    let corners: Vec<(f64, f64)> = match look.shape {
+        Shape::Circle => circle().map(|(sin, cos)| (1.1 * sin, 1.1 * cos)).collect(),
+        Shape::Square => vec![(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)],
+        Shape::Diamond => vec![(0.0, -1.45), (1.45, 0.0), (0.0, 1.45), (-1.45, 0.0)],
+        Shape::Up => vec![(0.0, -1.35), (1.35, 1.0), (-1.35, 1.0)],
+        Shape::Down => vec![(0.0, 1.35), (1.35, -1.0), (-1.35, -1.0)],
+        Shape::Cross => [(-1, -3), (0, -1), (1, -3), (3, -1), (1, 0), (3, 1), (1, 3), (0, 1), (-1, 3), (-3, 1), (-1, 0), (-3, -1)]
+            .map(|(x, y)| (0.42 * f64::from(x), 0.42 * f64::from(y)))
+            .to_vec(),
     };
-    if look.shape == Shape::Circle {
-        root.draw(&Circle::new((x, y), MARK + 3, background.filled()))?;
-        let style = if hollow { color.stroke_width(4) } else { color.filled() };
-        return root.draw(&Circle::new((x, y), MARK + 1, style));
-    }
-    root.draw(&Polygon::new(outline(MARK + 3), background.filled()))?;
-    if !hollow {
-        return root.draw(&Polygon::new(outline(MARK), color.filled()));
-    }
-    let mut closed = outline(MARK);
-    closed.extend(closed.clone().into_iter().take(2));
-    root.draw(&PathElement::new(closed, color.stroke_width(4)))
+    let scaled = |value: f64| (value * f64::from(MARK)).round() as i32;
+    corners.into_iter().map(|(dx, dy)| (x + scaled(dx), y + scaled(dy))).collect()
 }
 
-fn draw_grid(
-    root: &Area,
-    frame: &Frame,
-    x: Option<&Range>,
-    y: Option<&Range>,
-    at: impl Fn(f64, f64) -> (i32, i32),
-) -> DrawingResult {
-    let grid = rgb(palette::GRID.0).stroke_width(2);
-    if let Some(x) = x {
-        for tick in &x.ticks {
-            let px = at(*tick, f64::NAN).0;
-            root.draw(&PathElement::new(vec![(px, frame.top), (px, frame.bottom)], grid))?;
-            let label = tick_label(*tick, &x.ticks, x.scale);
-            root.draw_text(&label, &text(EM, HPos::Center, VPos::Top), (px, frame.bottom + EM / 3))?;
+/// Returns a small document with the line and mark of an entry.
+fn swatch(plot: &Plot, entry: &Entry) -> DrawingResult<String> {
+    let (mut svg, look) = (String::new(), palette::of(&entry.method));
+    {
+        let root = SVGBackend::with_string(&mut svg, (2 * EM as u32, EM as u32)).into_drawing_area();
+        if plot.style != Style::Points || has_intervals(plot) {
+            draw_stroke(&root, vec![(0, EM / 2), (2 * EM, EM / 2)], &look, entry.papers)?;
         }
-    }
-    if let Some(y) = y {
-        for tick in &y.ticks {
-            let py = at(f64::NAN, *tick).1;
-            root.draw(&PathElement::new(vec![(frame.left, py), (frame.right, py)], grid))?;
-            let label = tick_label(*tick, &y.ticks, y.scale);
-            root.draw_text(&label, &text(EM, HPos::Right, VPos::Center), (frame.left - EM / 2, py))?;
+        if plot.style != Style::Traces {
+            draw_mark(&root, (EM, EM / 2), &look, entry.papers)?;
         }
+        root.present()?;
     }
-    Ok(())
+    Ok(svg)
 }
 
-fn draw_curves(
-    root: &Area,
-    frame: &Frame,
-    x: &Axis,
-    y: &Axis,
-    series: &[Series],
-    marks: bool,
-) -> DrawingResult {
-    let finite = |p: &&(f64, f64)| p.0.is_finite() && p.1.is_finite();
-    let points = || series.iter().flat_map(|s| &s.points).filter(finite);
-    let xs = Range::of(x, points().map(|p| p.0), false);
-    let ys = Range::of(y, points().map(|p| p.1), true);
-    let pixels = (frame.left..frame.right, frame.bottom..frame.top);
-    let coordinates =
-        Cartesian2d::<RangedCoordf64, RangedCoordf64>::new(xs.coordinate(), ys.coordinate(), pixels);
-    let area = root.clone().apply_coord_spec(coordinates);
-    let at = |px: f64, py: f64| {
-        let inside = |value: f64, range: &Range| if value.is_nan() { range.low } else { value };
-        area.map_coordinate(&(xs.drawn(inside(px, &xs)), ys.drawn(inside(py, &ys))))
-    };
-    draw_grid(root, frame, Some(&xs), Some(&ys), at)?;
-    let line = rgb(palette::TEXT.0).stroke_width(3);
-    for value in &y.lines_at {
-        let py = at(f64::NAN, *value).1;
-        root.draw(&PathElement::new(vec![(frame.left, py), (frame.right, py)], line))?;
+fn shortened(text: &str) -> String {
+    if text.chars().count() <= LABEL {
+        return text.to_owned();
     }
-    root.draw_text(
-        &x.name,
-        &text(EM, HPos::Center, VPos::Top),
-        ((frame.left + frame.right) / 2, frame.bottom + LINE + EM / 4),
-    )?;
-    let vertical = text(EM, HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
-    root.draw_text(&y.name, &vertical, (MARGIN / 2, (frame.top + frame.bottom) / 2))?;
-    for series in series {
-        let look = palette::of(&series.method);
-        if !marks {
-            let thin = rgb(look.light).stroke_width(2);
-            for piece in series.points.split(|p| !finite(&p)) {
-                let piece: Vec<(i32, i32)> = piece.iter().map(|p| at(p.0, p.1)).collect();
-                root.draw(&PathElement::new(piece, thin))?;
-            }
-            continue;
-        }
-        let points: Vec<(i32, i32)> = series.points.iter().filter(finite).map(|p| at(p.0, p.1)).collect();
-        if points.len() > 1 {
-            stroke(root, points.clone(), &look, series.papers)?;
-        }
-        for point in points {
-            mark(root, point, &look, series.papers)?;
-        }
-    }
-    Ok(())
-}
-
-/// Returns the height of a row, in which marks with intervals lie below each other.
-fn row_height(row: &DotRow) -> i32 {
-    let lanes = row.marks.iter().filter(|mark| mark.interval.is_some()).count() as i32;
-    ROW_HEIGHT.max((lanes + 1) * LANE)
-}
-
-fn draw_paired(
-    root: &Area,
-    frame: &Frame,
-    value: &Axis,
-    methods: &[String],
-    persons: &[Vec<f64>],
-) -> DrawingResult {
-    let ys = Range::of(value, persons.iter().flatten().copied(), true);
-    let coordinates = Cartesian2d::<RangedCoordf64, RangedCoordf64>::new(
-        0.0..methods.len().max(1) as f64,
-        ys.coordinate(),
-        (frame.left..frame.right, frame.bottom..frame.top),
-    );
-    let area = root.clone().apply_coord_spec(coordinates);
-    let at = |column: usize, value: f64| area.map_coordinate(&(column as f64 + 0.5, ys.drawn(value)));
-    draw_grid(root, frame, None, Some(&ys), |_, value| at(0, if value.is_nan() { ys.low } else { value }))?;
-    let vertical = text(EM, HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
-    root.draw_text(&value.name, &vertical, (MARGIN / 2, (frame.top + frame.bottom) / 2))?;
-    for person in persons {
-        let line = person.iter().enumerate().map(|(column, value)| at(column, *value)).collect::<Vec<_>>();
-        root.draw(&PathElement::new(line, rgb(palette::NEUTRAL.0).stroke_width(2)))?;
-    }
-    for (column, method) in methods.iter().enumerate() {
-        let look = palette::of(method);
-        let values: Vec<f64> = persons.iter().filter_map(|person| person.get(column).copied()).collect();
-        let center = at(column, ys.low).0;
-        root.draw_text(method, &text(EM, HPos::Center, VPos::Top), (center, frame.bottom + EM / 3))?;
-        let height = |percent| percentile(&values, percent).map(|value| at(column, value).1);
-        let (Some(low), Some(first), Some(median), Some(third), Some(high)) =
-            (height(0.0), height(25.0), height(50.0), height(75.0), height(100.0))
-        else {
-            continue;
-        };
-        let (left, right) = (center - 2 * EM, center + 2 * EM);
-        let style = rgb(look.light).stroke_width(4);
-        let corners =
-            [(left, first), (right, first), (right, third), (left, third), (left, first), (right, first)];
-        root.draw(&PathElement::new(corners.to_vec(), style))?;
-        root.draw(&PathElement::new(vec![(left, median), (right, median)], style.stroke_width(8)))?;
-        for whisker in [(first, low), (third, high)] {
-            root.draw(&PathElement::new(vec![(center, whisker.0), (center, whisker.1)], style))?;
-        }
-        for value in values {
-            root.draw(&Circle::new(at(column, value), MARK / 2, rgb(look.light).filled()))?;
-        }
-    }
-    Ok(())
-}
-
-fn draw_dots(root: &Area, frame: &Frame, value: &Axis, rows: &[DotRow]) -> DrawingResult {
-    let marks = rows.iter().flat_map(|row| &row.marks);
-    let values = marks.flat_map(|mark| {
-        let interval = mark.interval.map(|interval| [interval.low, interval.high]);
-        std::iter::once(mark.value).chain(interval.into_iter().flatten())
-    });
-    let range = Range::of(value, values, true);
-    let coordinates = Cartesian2d::<RangedCoordf64, RangedCoordf64>::new(
-        range.coordinate(),
-        0.0..rows.len().max(1) as f64,
-        (frame.left..frame.right, frame.top..frame.bottom),
-    );
-    let area = root.clone().apply_coord_spec(coordinates);
-    let at = |value: f64, row: f64| area.map_coordinate(&(range.drawn(value), row));
-    draw_grid(root, frame, Some(&range), None, |value, _| at(value, 0.0))?;
-    let line = rgb(palette::TEXT.0).stroke_width(3);
-    for value in &value.lines_at {
-        let px = at(*value, 0.0).0;
-        root.draw(&PathElement::new(vec![(px, frame.top), (px, frame.bottom)], line))?;
-    }
-    let middle = (frame.left + frame.right) / 2;
-    let below = frame.bottom + LINE + EM / 4;
-    root.draw_text(&value.name, &text(EM, HPos::Center, VPos::Top), (middle, below))?;
-    let grid = rgb(palette::GRID.0).stroke_width(2);
-    let mut top = frame.top;
-    for row in rows {
-        let height = row_height(row);
-        let y = top + height / 2;
-        top += height;
-        root.draw(&PathElement::new(vec![(frame.left, y), (frame.right, y)], grid))?;
-        let label = shortened(&row.label, LABEL);
-        root.draw_text(&label, &text(EM, HPos::Right, VPos::Center), (frame.left - EM / 2, y))?;
-        let lanes = row.marks.iter().filter(|m| m.interval.is_some()).count() as i32;
-        let mut lane = 0;
-        for m in row.marks.iter().filter(|m| m.value.is_finite()) {
-            let px = |value: f64| at(value, 0.0).0.clamp(frame.left, frame.right);
-            let (look, mut y) = (palette::of(&m.method), y);
-            if let Some(interval) = m.interval {
-                y += (2 * lane - lanes + 1) * LANE / 2;
-                lane += 1;
-                stroke(root, vec![(px(interval.low), y), (px(interval.high), y)], &look, m.papers)?;
-            }
-            mark(root, (px(m.value), y), &look, m.papers)?;
-        }
-    }
-    Ok(())
-}
-
-fn shortened(text: &str, length: usize) -> String {
-    if text.chars().count() <= length {
-        return text.to_string();
-    }
-    text.chars().take(length - 1).chain(['…']).collect()
+    text.chars().take(LABEL - 1).chain(['…']).collect()
 }

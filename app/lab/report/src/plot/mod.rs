@@ -1,86 +1,48 @@
-//! Figures, drawn as SVG by plotters in the colours of the light page. The page's style sheet replaces them by those of
-//! the dark one.
+//! Plots: values of methods over a quantity or by row, drawn as SVG by plotters.
 
-mod axis;
 mod draw;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeSet;
+use serde_json::{Value, json};
 
-use crate::inference::Interval;
+use crate::Interval;
+use crate::palette::css_rules;
+use crate::stats::unique;
 
-/// A method, whether the figures are the paper's, and the label.
-type LegendEntry = (String, bool, String);
-
-/// The error when a figure cannot be drawn.
+/// The error when a plot cannot be drawn.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot draw the figure {id}: {what}")]
+#[error("cannot draw the plot \"{title}\": {what}")]
 pub struct PlotError {
-    id: String,
+    title: String,
     what: String,
 }
 
-/// One figure.
+/// A plot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
-    /// The name of its file, and its anchor on the page.
-    pub id: String,
-    /// Its heading.
+pub struct Plot {
+    /// The heading.
     pub title: String,
     /// A note for the reader.
     pub caption: String,
-    /// The plot.
-    pub panel: Panel,
+    style: Style,
+    x: Axis,
+    y: Axis,
+    /// The names of the rows from top to bottom, in place of a vertical axis.
+    rows: Vec<String>,
+    /// The series; the first is drawn last, on top.
+    series: Vec<Series>,
 }
 
-/// The kinds of plots.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Panel {
-    /// One quantity over another.
-    Curves {
-        /// Horizontal axis.
-        x: Axis,
-        /// Vertical axis.
-        y: Axis,
-        /// The curves in the order of drawing, the last on top.
-        series: Vec<Series>,
-    },
-    /// Values over time that lie close together: thin lines without marks, interrupted where a value is not finite.
-    Traces {
-        /// Horizontal axis.
-        x: Axis,
-        /// Vertical axis.
-        y: Axis,
-        /// The curves in the order of drawing, the last on top. Curves with equal labels share one entry of the legend.
-        series: Vec<Series>,
-    },
-    /// Values of the same persons with several methods: a box for each method, and a thin line for each person.
-    Paired {
-        /// Vertical axis.
-        value: Axis,
-        /// The methods, from left to right.
-        methods: Vec<String>,
-        /// The values of each person, one for each method.
-        persons: Vec<Vec<f64>>,
-    },
-    /// A row for each category, with a mark for each method.
-    Dots {
-        /// Horizontal axis.
-        value: Axis,
-        /// The rows, from top to bottom.
-        rows: Vec<DotRow>,
-    },
-}
-
-/// The scale of an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Scale {
-    /// Equal steps are equally far apart.
-    #[default]
-    Linear,
-    /// Equal factors are equally far apart.
-    Logarithmic,
+/// How the points of a series are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Style {
+    /// A mark for each point, and lines between them.
+    Curves,
+    /// A mark for each point.
+    Points,
+    /// A thin line without marks, interrupted where a value is not finite.
+    Traces,
 }
 
 /// An axis.
@@ -88,8 +50,8 @@ pub enum Scale {
 pub struct Axis {
     /// The quantity and its unit.
     pub name: String,
-    /// The scale.
-    pub scale: Scale,
+    /// True if equal factors are equally far apart, instead of equal steps.
+    pub logarithmic: bool,
     /// Values that the axis includes in any case.
     pub include: Vec<f64>,
     /// Values at which a line marks a baseline or a bound.
@@ -109,7 +71,7 @@ impl Axis {
 
     /// Returns the axis with a logarithmic scale.
     pub fn logarithmic(self) -> Axis {
-        Axis { scale: Scale::Logarithmic, ..self }
+        Axis { logarithmic: true, ..self }
     }
 
     /// Returns the axis with a line at a baseline, extended to zero.
@@ -125,65 +87,107 @@ impl Axis {
     }
 }
 
-/// A curve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+/// What the points of a series have in common: an entry of the legend.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
     /// The method that determines colour and mark.
     pub method: String,
+    /// The label in the legend.
+    pub label: String,
     /// True for the paper's figures: dashed, with hollow marks.
     pub papers: bool,
-    /// The label in the legend.
-    pub label: String,
-    /// The points, ordered by x.
-    pub points: Vec<(f64, f64)>,
 }
 
-/// A row of a dot plot.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DotRow {
-    /// The category.
-    pub label: String,
-    /// The marks in the order of drawing.
-    pub marks: Vec<Mark>,
-}
-
-/// A mark of a dot plot.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
-    /// The method that determines colour and mark.
-    pub method: String,
-    /// True for the paper's figures: hollow.
-    pub papers: bool,
-    /// The label in the legend.
-    pub label: String,
-    /// The value on the axis. If it is not finite, the mark is not drawn.
-    pub value: f64,
-    /// The interval, drawn as a bar; such a mark gets a lane of its own in its row.
-    pub interval: Option<Interval>,
-}
-
-impl Mark {
-    /// Returns a mark for one of our figures.
-    pub fn new(method: impl Into<String>, label: impl Into<String>, value: f64) -> Mark {
-        Mark { method: method.into(), papers: false, label: label.into(), value, interval: None }
+impl Entry {
+    /// Returns the entry of our figures of a method.
+    pub fn ours(method: impl Into<String>) -> Entry {
+        let method = method.into();
+        Entry { label: method.clone(), method, papers: false }
     }
 
-    /// Returns a mark for one of the paper's figures.
-    pub fn papers(method: impl Into<String>, label: impl Into<String>, value: f64) -> Mark {
-        Mark { papers: true, ..Mark::new(method, label, value) }
+    /// Returns the entry of the paper's figures of the system that corresponds to a method.
+    pub fn papers(method: impl Into<String>, label: impl Into<String>) -> Entry {
+        Entry { method: method.into(), label: label.into(), papers: true }
     }
 }
 
-impl Figure {
-    /// Returns the figure as an SVG document.
-    ///
-    /// # Errors
-    /// [`PlotError`] if plotters refuses.
-    pub fn svg(&self) -> Result<String, PlotError> {
-        let mut svg = String::new();
-        draw::draw(self, &mut svg)
-            .map_err(|error| PlotError { id: self.id.clone(), what: error.to_string() })?;
-        Ok(svg)
+/// A value and its interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Point {
+    x: f64,
+    /// The value on the vertical axis, or the number of the row.
+    y: f64,
+    /// The interval of x.
+    interval: Option<Interval>,
+}
+
+impl Point {
+    fn is_finite(&self) -> bool {
+        self.x.is_finite() && self.y.is_finite()
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Series {
+    entry: Entry,
+    points: Vec<Point>,
+}
+
+impl Plot {
+    fn new(title: impl Into<String>, style: Style, x: Axis, y: Axis) -> Plot {
+        let title = title.into();
+        Plot { title, caption: String::new(), style, x, y, rows: Vec::new(), series: Vec::new() }
+    }
+
+    /// Returns a plot without values of one quantity over another. [`Plot::curve`] adds values.
+    pub fn curves(title: impl Into<String>, x: Axis, y: Axis) -> Plot {
+        Plot::new(title, Style::Curves, x, y)
+    }
+
+    /// Returns a plot without values of one quantity over another, without lines between them. [`Plot::curve`] adds
+    /// values.
+    pub fn points(title: impl Into<String>, x: Axis, y: Axis) -> Plot {
+        Plot::new(title, Style::Points, x, y)
+    }
+
+    /// Returns a plot without values over time that lie close together: thin lines, interrupted where a value is not
+    /// finite. [`Plot::curve`] adds values.
+    pub fn traces(title: impl Into<String>, x: Axis, y: Axis) -> Plot {
+        Plot::new(title, Style::Traces, x, y)
+    }
+
+    /// Returns a plot without values that has a row for each category. [`Plot::mark`] adds values.
+    pub fn rows(title: impl Into<String>, value: Axis) -> Plot {
+        Plot::new(title, Style::Points, value, Axis::default())
+    }
+
+    /// Returns the plot with a note for the reader.
+    pub fn caption(self, caption: impl Into<String>) -> Plot {
+        Plot { caption: caption.into(), ..self }
+    }
+
+    /// Adds the points of a curve, each with its x and y. Curves with equal entries share one entry of the legend.
+    pub fn curve(&mut self, entry: Entry, points: impl IntoIterator<Item = (f64, f64)>) {
+        let points = points.into_iter().map(|(x, y)| Point { x, y, interval: None });
+        self.series.push(Series { entry, points: points.collect() });
+    }
+
+    /// Adds a value to a row, which is appended if it is new. A value that is not finite is not drawn.
+    pub fn mark(&mut self, row: &str, entry: Entry, value: f64) {
+        self.mark_interval(row, entry, value, None);
+    }
+
+    /// Adds a value and its interval, drawn as a bar, to a row.
+    pub fn mark_interval(&mut self, row: &str, entry: Entry, value: f64, interval: Option<Interval>) {
+        let at = self.rows.iter().position(|name| name == row).unwrap_or_else(|| {
+            self.rows.push(row.to_owned());
+            self.rows.len() - 1
+        });
+        let point = Point { x: value, y: at as f64, interval };
+        match self.series.iter_mut().find(|series| series.entry == entry) {
+            Some(series) => series.points.push(point),
+            None => self.series.push(Series { entry, points: vec![point] }),
+        }
     }
 
     /// True if there is nothing to see.
@@ -191,26 +195,49 @@ impl Figure {
         self.legend().is_empty()
     }
 
-    /// Returns every method once, ours before the paper's. Whatever is drawn last, on top, is listed first.
-    fn legend(&self) -> Vec<LegendEntry> {
-        let all: Vec<LegendEntry> = match &self.panel {
-            Panel::Curves { series, .. } | Panel::Traces { series, .. } => {
-                let drawn =
-                    series.iter().filter(|s| s.points.iter().any(|p| p.0.is_finite() && p.1.is_finite()));
-                drawn.map(|s| (s.method.clone(), s.papers, s.label.clone())).collect()
-            }
-            Panel::Paired { methods, persons, .. } => {
-                let methods = methods.iter().rev().filter(|_| !persons.is_empty());
-                methods.map(|method| (method.clone(), false, method.clone())).collect()
-            }
-            Panel::Dots { rows, .. } => {
-                let marks = rows.iter().flat_map(|row| &row.marks).filter(|mark| mark.value.is_finite());
-                marks.map(|m| (m.method.clone(), m.papers, m.label.clone())).collect()
-            }
-        };
-        let mut seen = BTreeSet::new();
-        let mut unique: Vec<_> = all.into_iter().rev().filter(|entry| seen.insert(entry.clone())).collect();
-        unique.sort_by_key(|(_, papers, _)| *papers);
-        unique
+    /// Returns every entry once: ours, then the paper's.
+    pub fn legend(&self) -> Vec<&Entry> {
+        let seen = self.series.iter().filter(|series| series.points.iter().any(Point::is_finite));
+        let mut entries = unique(seen.map(|series| &series.entry));
+        entries.sort_by_key(|entry| entry.papers);
+        entries
+    }
+
+    /// Returns the plot with its legend as an SVG document, light or dark as its reader prefers.
+    ///
+    /// # Errors
+    /// [`PlotError`] if plotters refuses.
+    pub fn to_svg(&self) -> Result<String, PlotError> {
+        let drawing = self.draw(true)?;
+        let style = format!("<style>@media (prefers-color-scheme: dark) {{{}}}</style>", css_rules());
+        Ok(drawing.svg.replacen('>', &format!(">{style}"), 1))
+    }
+
+    fn draw(&self, with_legend: bool) -> Result<draw::Drawing, PlotError> {
+        draw::draw(self, with_legend)
+            .map_err(|error| PlotError { title: self.title.clone(), what: error.to_string() })
+    }
+
+    /// Returns what the page's template and script need: drawing, legend, and the points with their places.
+    pub(crate) fn to_page(&self) -> Result<Value, PlotError> {
+        let drawing = self.draw(false)?;
+        let legend = self.legend();
+        let entries = legend.iter().zip(&drawing.swatches);
+        let entries = entries.map(|(entry, swatch)| json!({ "label": entry.label, "swatch": swatch }));
+        let data = json!({
+            "x": self.x.name,
+            "y": self.y.name,
+            "rows": self.rows,
+            "series": legend.iter().map(|entry| &entry.label).collect::<Vec<_>>(),
+            "points": drawing.points,
+        });
+        Ok(json!({
+            "title": self.title,
+            "caption": self.caption,
+            "svg": drawing.svg,
+            "legend": entries.collect::<Vec<_>>(),
+            // A script element ends at the first "</script", wherever it is.
+            "data": data.to_string().replace('<', "\\u003c"),
+        }))
     }
 }

@@ -9,7 +9,7 @@ use crate::fixture::quad;
 use yoro::eyes::DepthConvention;
 use yoro_assets::motion::{Carrier, MovingLight, MovingMesh, Node, Track};
 use yoro_assets::{Motion, Scene, ShadingStyle};
-use yoro_estimate::{Command, Recorder};
+use yoro_test_support::record::{Command, Recorder};
 
 fn track(values: &[f32]) -> Option<Track> {
     Some(Track { times: vec![0.0, 2.0], values: values.to_vec(), ..Track::default() })

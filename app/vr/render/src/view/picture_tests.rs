@@ -8,7 +8,7 @@ use crate::fixture::quad;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
 use yoro_assets::{Alpha, Material, Model, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
-use yoro_estimate::{Command, Recorder};
+use yoro_test_support::record::{Command, Recorder};
 use yoro_gl::Capabilities;
 
 const SIZE: [u32; 2] = [96, 64];

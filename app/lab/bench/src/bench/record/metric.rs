@@ -1,8 +1,6 @@
 //! Names of the metrics, with units. Quality is that of the eye that is not dominant, compared with a real render of
 //! the same eye (`conventional`); images are 8 bits, display-referred.
 
-pub use yoro_estimate::metric::*;
-
 /// Wall-clock time of a whole stereo frame up to glFinish, in ms.
 pub const FRAME_MS: &str = "frame_ms";
 /// CPU time of all threads of the process during that frame, in ms.
@@ -73,6 +71,9 @@ pub const CHANGE_REST: &str = "change_rest";
 pub const FLICKERS: [&str; 4] = [FLICKER, FLICKER_HOLES, FLICKER_EDGES, FLICKER_REST];
 /// The corresponding metrics of the ground truth, measured for `conventional`.
 pub const CHANGES: [&str; 4] = [CHANGE, CHANGE_HOLES, CHANGE_EDGES, CHANGE_REST];
+
+/// PSNR (RGB) in dB in the columns at the other eye's outer border that a guard band serves.
+pub const BORDER_PSNR: &str = "border_psnr";
 
 /// Pixels that are rendered, of those of two full eyes.
 pub const SHADED: &str = "shaded";

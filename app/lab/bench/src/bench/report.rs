@@ -1,0 +1,218 @@
+//! The report of `yoro bench`: files of results as sections of tables, plots and pictures.
+
+use std::path::{Path, PathBuf};
+
+use yoro::eyes::Eye;
+use yoro_report::{OtherEye, Picture, Pictures, Report, ReportError, ReportFiles, Section, Text};
+
+use super::pictures::picture_folder;
+use super::record::Results;
+use super::results::{self, CONVENTIONAL, MONO, SuiteData};
+use super::suites::EXPERIMENTS;
+use super::tables;
+use crate::report::{QUALITY_METHOD, Viewpoint};
+use yoro_media::PictureError;
+use yoro_metrics::MetricsError;
+
+/// The heading of the page.
+const TITLE: &str = "yoro: every method side by side";
+
+/// Explains the marks by which the paper's figures are recognized.
+const PAPERS_MARK: &str = "What is *in italics*, hollow or dashed is the paper's (\"You Only Render Once\", MobiSys '25): \
+its own scenes, six phones and a Quest 2.";
+
+/// Explains how frame times are measured.
+const TIME_METHOD: &str = "Frame times: wall clock of a whole stereo frame up to glFinish. Methods take turns within \
+each round, so that ratios pair frames of the same round; means of ratios over scenes are geometric.";
+
+/// The error when files of results give no report.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BenchReportError {
+    /// A file has no finished round.
+    #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A picture beside a file cannot be read.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The pictures of a setting cannot be compared.
+    #[error("the pictures in {} do not go together ({source}): measure again, or remove the folder", path.display())]
+    Sizes {
+        /// The folder.
+        path: PathBuf,
+        /// The mistake.
+        source: MetricsError,
+    },
+}
+
+/// The combined contents of files of results.
+pub struct BenchReport {
+    files: Vec<Results>,
+    suites: Vec<SuiteData>,
+    pictures: Vec<Pictures>,
+}
+
+impl BenchReport {
+    /// Combines files and loads the pictures beside them.
+    ///
+    /// # Errors
+    /// [`BenchReportError`] for a file without a finished round, and for damaged pictures.
+    pub fn new(files: Vec<Results>) -> Result<BenchReport, BenchReportError> {
+        if let Some(empty) = files.iter().find(|file| file.measurements().next().is_none()) {
+            return Err(BenchReportError::Empty { path: empty.path.clone() });
+        }
+        let suites = results::suites(&files);
+        let mut pictures = Vec::new();
+        for file in &files {
+            pictures.extend(load_pictures(file)?);
+        }
+        Ok(BenchReport { files, suites, pictures })
+    }
+
+    /// Returns the sections of all suites in the order of [`EXPERIMENTS`], then those of suites that are not known, the
+    /// pictures, and how everything was measured.
+    pub fn report(&self) -> Report {
+        let mut sections = Vec::new();
+        for experiment in EXPERIMENTS {
+            for suite in self.suites.iter().filter(|suite| suite.name == experiment.name()) {
+                sections.extend(experiment.sections(suite).into_iter().map(|section| self.finished(section, suite)));
+            }
+        }
+        let is_known = |suite: &&SuiteData| EXPERIMENTS.iter().any(|known| known.name() == suite.name);
+        for suite in self.suites.iter().filter(|suite| !is_known(suite)) {
+            sections.push(self.finished(tables::everything(&suite.name, "", suite), suite));
+        }
+        let mut pictures = Section::new("Pictures", QUALITY_METHOD);
+        self.pictures.iter().for_each(|view| pictures.pictures(view.clone()));
+        sections.push(pictures);
+        sections.retain(|section| !section.is_empty());
+        sections.push(self.method());
+        Report { title: TITLE.into(), summary: vec![PAPERS_MARK.into()], sections }
+    }
+
+    /// Returns the files that [`BenchReport::write`] writes into `folder`.
+    pub fn files(folder: &Path) -> ReportFiles {
+        ReportFiles::of(folder, "report", false)
+    }
+
+    /// Writes `report.html` and `report.md` into a folder.
+    ///
+    /// # Errors
+    /// [`ReportError`]; existing files are then unchanged.
+    pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
+        self.report().write(folder, "report", None)
+    }
+
+    /// Adds how and where a suite was measured.
+    fn finished(&self, mut section: Section, suite: &SuiteData) -> Section {
+        section.place = self.place(suite).unwrap_or_default();
+        let machine = &suite.header.machine;
+        if !section.is_empty() {
+            section.text(Text::quiet(format!(
+                "`{}` on {}, {} cores, {}, {}.",
+                machine.command, machine.cpu, machine.cores, machine.gl_renderer, machine.date
+            )));
+        }
+        section
+    }
+
+    /// Returns the GL renderer if several machines measured the same suite, with its version if only that differs.
+    fn place(&self, suite: &SuiteData) -> Option<String> {
+        let gl = |suite: &SuiteData| {
+            let machine = &suite.header.machine;
+            (machine.gl_renderer.clone(), machine.gl_version.clone())
+        };
+        let (renderer, version) = gl(suite);
+        let others: Vec<_> = self.suites.iter().filter(|other| other.name == suite.name).map(gl).collect();
+        let another_version = others.iter().any(|(r, v)| *r == renderer && *v != version);
+        match (others.len() > 1, another_version) {
+            (false, _) => None,
+            (true, false) => Some(renderer),
+            (true, true) => Some(format!("{renderer}, {version}")),
+        }
+    }
+
+    /// Returns how figures are measured, and the parameters of each file.
+    fn method(&self) -> Section {
+        let mut section = Section::new("How it was measured", TIME_METHOD);
+        section.text(QUALITY_METHOD);
+        for Results { path, header, .. } in &self.files {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let list = |facts: &[(&str, &str)]| {
+                facts.iter().map(|(name, value)| format!("{name}: {value}")).collect::<Vec<_>>().join("; ")
+            };
+            let machine = &header.machine;
+            let parameters: Vec<(&str, &str)> =
+                header.parameters.iter().map(|p| (p.name.as_str(), p.value.as_str())).collect();
+            let machine = [
+                ("GL", machine.gl_version.as_str()),
+                ("OS", &machine.os),
+                ("yoro", &machine.yoro),
+            ];
+            section.text(Text::quiet(format!("`{name}`: {}; {}.", list(&machine), list(&parameters))));
+        }
+        section
+    }
+}
+
+/// Loads the pictures beside a file, in the order of its settings.
+fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
+    let mut pictures = Vec::new();
+    let dominant_eye = file.header.parameters.iter().find(|parameter| parameter.name == "dominant eye");
+    let dominant_eye = match dominant_eye {
+        Some(parameter) if parameter.value == Eye::Left.name() => Eye::Left,
+        _ => Eye::Right,
+    };
+    for facts in file.scenes() {
+        let folder = picture_folder(&file.path, &facts.conditions);
+        // Not every suite's pictures include the dominant eye.
+        if !["truth.png", "dominant.png"].iter().all(|name| folder.join(name).is_file()) {
+            continue;
+        }
+        let load = |name: &str| yoro_media::load_color(&folder.join(format!("{name}.png")));
+        let names = file.measurements().filter(|m| m.conditions == facts.conditions && m.round == 0);
+        let names = names.map(|measurement| measurement.contender.as_str());
+        let mut views = Vec::new();
+        for name in names.filter(|name| ![CONVENTIONAL, MONO].contains(name)) {
+            if folder.join(format!("{name}.png")).is_file() {
+                views.push((name.to_owned(), load(name)?));
+            }
+        }
+        let frame = facts.frames.first().cloned().unwrap_or_else(|| "first frame".into());
+        let (dominant, truth) = (load("dominant")?, load("truth")?);
+        let viewpoint = Viewpoint::measure(frame, dominant_eye, dominant, truth, views)
+            .map_err(|source| BenchReportError::Sizes { path: folder.clone(), source })?;
+        let setting = &facts.conditions;
+        let point = setting.label.clone().or(setting.point.map(|point| point.to_string()));
+        let note = point.map_or_else(|| setting.suite.clone(), |point| format!("{}, {point}", setting.suite));
+        pictures.push(Pictures { title: setting.scene.clone(), note, ..pictures_of(&viewpoint) });
+    }
+    Ok(pictures)
+}
+
+/// Returns the pictures of a viewpoint: the real render, each method's, the same image, and maps of the errors.
+fn pictures_of(viewpoint: &Viewpoint) -> Pictures {
+    let caption = |quality: &yoro_metrics::Quality| {
+        format!("PSNR {}, SSIM {:.4}", quality.psnr, quality.ssim_gaussian)
+    };
+    let picture = |label: String, caption: String, image: &image::RgbImage, is_map: bool| Picture {
+        label,
+        caption,
+        image: image.clone(),
+        is_map,
+    };
+    let same = caption(&viewpoint.same_image);
+    let views = &viewpoint.views;
+    let mut pictures =
+        vec![picture("really rendered".into(), viewpoint.name.clone(), &viewpoint.ground_truth, false)];
+    pictures.extend(views.iter().map(|v| picture(v.method.clone(), caption(&v.quality), &v.eye, false)));
+    let dominant = OtherEye { picture: pictures.len(), is_left: viewpoint.dominant_eye == Eye::Left };
+    pictures.push(picture("same image".into(), same.clone(), &viewpoint.dominant, false));
+    let error = |name: &str| format!("error: {name}");
+    pictures.extend(views.iter().map(|v| picture(error(&v.method), caption(&v.quality), &v.error, true)));
+    pictures.push(picture(error("same image"), same, &viewpoint.same_image_error, true));
+    Pictures { pictures, other_eye: Some(dominant), ..Pictures::default() }
+}

@@ -1,0 +1,86 @@
+//! Frame time with few lights
+
+use super::super::record::metric;
+use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
+use super::super::tables::{PapersColumn, mark_scenes, papers_entry, scene_table, time_details};
+use yoro_report::paper::{self, PAPER};
+use yoro_report::text::fixed;
+use yoro_report::{Axis, Entry, Plot, Section};
+use super::super::contender::Contender;
+use super::super::frames::{self, FrameMeasures};
+use super::super::job::{Choices, Job};
+use super::super::runner::Runner;
+use super::super::scenes::LazyObject;
+use super::super::Experiment;
+use yoro_render::PreparedScene;
+
+/// The number of lights: the paper has fewer than five.
+const FEW_LIGHTS: usize = 4;
+
+/// Frame time with few lights.
+pub struct Lights;
+
+impl Experiment for Lights {
+    fn name(&self) -> &'static str {
+        "lights"
+    }
+
+    fn about(&self) -> &'static str {
+        "Frame time of every method with four lights: the paper's setting for single-pass instancing"
+    }
+
+    fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {
+        let contenders = choices.contenders(self.name(), Contender::methods(), &[Contender::CONVENTIONAL])?;
+        Ok(choices.sweep(self, choices.all_scenes(), [FEW_LIGHTS], |job, lights| {
+            job.contenders.clone_from(&contenders);
+            job.rounds = choices.rounds;
+            job.render.point_lights = lights;
+            job.conditions.point = Some(lights as f64);
+        }))
+    }
+
+    fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
+        frames::measure(runner, job, scene, FrameMeasures { cost: true, quality: false, pictures: false })
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "Few lights",
+            "The paper's setting for single-pass instancing: fewer than five lights, basic post-processing. It gives means \
+             over scenes and devices only.",
+        );
+        let cost = |setting: &SettingData, name: &str| setting.cost(name).map(|cost| cost.median);
+        let papers: Vec<(&str, f64)> =
+            PAPER.few_lights.iter().map(|(name, fps)| (name.as_str(), PAPER.few_lights[CONVENTIONAL] / fps)).collect();
+        let others = suite.compared(metric::FRAME_MS);
+        let title = "Frame time over two full renders";
+        let plot = Plot::rows(title, Axis::new("frame time / conventional").baseline(1.0))
+            .caption("The line is conventional rendering.");
+        let mut plot = mark_scenes(plot, suite, &others, cost, |_| Vec::new());
+        for name in others {
+            if let Some(cost) = suite.mean_cost(name) {
+                plot.mark("mean", Entry::ours(name), cost);
+            }
+        }
+        for (method, ratio) in papers.iter().filter(|(method, _)| *method != CONVENTIONAL) {
+            plot.mark("mean", papers_entry(method), *ratio);
+        }
+        section.plot(plot);
+        let means = papers.iter().map(|(method, ratio)| format!("{} {ratio:.2}", paper::system(method)));
+        let column = PapersColumn {
+            title: "the paper's means",
+            of_scene: |_| None,
+            mean: Some(means.collect::<Vec<_>>().join(", ")),
+        };
+        section.table(scene_table(
+            suite,
+            title,
+            &suite.measured(metric::FRAME_MS),
+            |setting, name| fixed(cost(setting, name), 2),
+            |name| fixed(suite.mean_cost(name), 2),
+            Some(column),
+        ));
+        section.table(time_details(suite, |_, _| None));
+        vec![section]
+    }
+}

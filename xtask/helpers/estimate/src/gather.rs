@@ -1,0 +1,389 @@
+//! What the synthesis executes.
+//!
+//! The runs of the parts of `gather` are counted on real frames, by a copy of its shaders into which `cargo xtask
+//! maintain estimate` has written counters. A GPU runs a part as often as the slowest pixel of a wave does. The sizes of
+//! the parts are those that Mesa's compilers make of the same source without some of them.
+
+use std::rc::Rc;
+
+use anyhow::ensure;
+
+use crate::costs::Work;
+use crate::gpus::Device;
+use crate::traffic::MARCH;
+use crate::waves::{combine, wave_size};
+use yoro::eyes::SynthesisViews;
+use yoro::opengl::{Gather, Options, Outputs};
+use yoro::synthesis::Uniforms;
+use yoro_gl::{Context, Filter, Format, RenderTarget};
+use yoro_render::{NearestDepth, PreparedScene, ViewTargets};
+use yoro_test_support::record::{Command, Draw};
+
+/// The size of a tile in pixels. The first two passes draw one fragment per tile.
+const TILE: [u32; 2] = [16, 8];
+/// The number of row pairs of a tile, and thus of trips of its loop.
+const TILE_TRIPS: f64 = TILE[1] as f64 / 2.0;
+/// Bytes read and written for each pixel, counting every texel once: depth for the tiles, colour, target, and both
+/// maps.
+const BYTES: f64 = 4.0 + 4.0 + 4.0 + 2.0 * 2.0 * 16.0 / (TILE[0] * TILE[1]) as f64;
+/// Bytes of depth that the march reads for a pixel whose tile has no law.
+const DEPTH_BYTES: f64 = 4.0;
+
+/// The largest number of source tiles that a law is made of (`LAW_TILES` in `include/laws.glsl`).
+const LAW_TILES: f64 = 4.0;
+
+/// A variant of the march.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct March {
+    /// True if it adds bloom.
+    pub bloom: bool,
+    /// True if it writes depth, for surfaces that are drawn over the synthesized eye.
+    pub depth: bool,
+}
+
+impl March {
+    /// Returns the variant that a recorded frame runs.
+    pub fn of(commands: &[Command]) -> March {
+        let draws = commands.iter().filter_map(|command| match command {
+            Command::Draw(draw @ Draw { pass: MARCH, .. }) => Some(draw),
+            _ => None,
+        });
+        let defines = draws.flat_map(|draw| draw.program.defines.iter().map(|(name, _)| name.as_str()));
+        defines.fold(March::default(), |march, name| March {
+            bloom: march.bloom || name == "BLOOM",
+            depth: march.depth || name == "WRITE_DEPTH",
+        })
+    }
+}
+
+/// How often the march's parts run: for one pixel, or the maximum over a wave's pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Trips {
+    /// 1 if the pixel's tile has a law.
+    law: f64,
+    /// 1 if the pixel's tile has no law.
+    searches: f64,
+    short: f64,
+    /// 1 if the pixel goes the long way.
+    takes_long_way: f64,
+    segments: f64,
+    events: f64,
+    /// Steps to the crossing of a segment.
+    crossings: f64,
+    holes: f64,
+}
+
+impl Trips {
+    fn of([ways, segments, events, crossings]: [u8; 4]) -> Trips {
+        let law = f64::from(ways >> 5 & 1);
+        Trips {
+            law,
+            searches: 1.0 - law,
+            short: f64::from(ways & 7),
+            takes_long_way: f64::from(ways >> 4 & 1),
+            segments: segments.into(),
+            events: events.into(),
+            crossings: crossings.into(),
+            holes: f64::from(ways >> 3 & 1),
+        }
+    }
+
+    fn max(self, other: Trips) -> Trips {
+        Trips {
+            law: self.law.max(other.law),
+            searches: self.searches.max(other.searches),
+            short: self.short.max(other.short),
+            takes_long_way: self.takes_long_way.max(other.takes_long_way),
+            segments: self.segments.max(other.segments),
+            events: self.events.max(other.events),
+            crossings: self.crossings.max(other.crossings),
+            holes: self.holes.max(other.holes),
+        }
+    }
+}
+
+/// The costs of the parts of gather's passes on one GPU.
+struct Costs {
+    /// The number of pixels in a wave of the march.
+    lanes: u32,
+    parts: Vec<(&'static str, Work)>,
+}
+
+impl Costs {
+    /// Reads the costs on a GPU, and gives each loop a name for what it does in the shader. With `pairs`, depth is that
+    /// of two samples.
+    ///
+    /// # Errors
+    /// If the table has no entry for this GPU, or a program has an unexpected number of loops.
+    fn of(gpu: &str, pairs: bool) -> anyhow::Result<Costs> {
+        let table = crate::costs::Costs::of(gpu)?;
+        let of = |pass: &str, more: &[&str], loops: usize| {
+            let reads_depth = pairs && pass != "spans";
+            let macros: Vec<&str> =
+                reads_depth.then_some("DEPTH_PAIRS").into_iter().chain(more.iter().copied()).collect();
+            let parts = table.parts(&format!("synthesis/gather/{pass}.frag"), &macros)?;
+            let found = parts.loops.len();
+            ensure!(
+                found == loops,
+                "{pass} {more:?} has {found} loops on {gpu}, and {loops} are named: name them anew in gather.rs"
+            );
+            Ok(parts)
+        };
+        let (tiles, spans) = (of("tiles", &[], 1)?, of("spans", &[], 3)?);
+        // Each program adds one part to the previous one: see tests/src/programs.rs.
+        let law = of("march", &["PARTS=1"], 0)?;
+        let short = of("march", &["PARTS=2"], 1)?;
+        let segments = of("march", &["PARTS=6"], 2)?;
+        let events = of("march", &["PARTS=14"], 2)?;
+        let fill = of("march", &["PARTS=30"], 2)?;
+        let all = of("march", &["PARTS=62"], 3)?;
+        let depth = of("march", &["WRITE_DEPTH", "PARTS=1"], 0)?;
+        // Bloom reads no depth.
+        let bloom = table.parts("synthesis/gather/march.frag", &["BLOOM", "PARTS=1"])?;
+        let without_bloom = table.parts("synthesis/gather/march.frag", &["PARTS=1"])?;
+        // The loop over segments is the second one, the loop to a crossing is the last. Events are handled in two
+        // places, one of them before the loop.
+        let event = events.loops[1].minus(segments.loops[1]);
+        let crossing = all.straight.minus(fill.straight);
+        let long = events.straight.plus(1.0, crossing).minus(event).minus(short.straight);
+        let parts = vec![
+            ("tiles", tiles.straight),
+            ("tiles: two rows", tiles.loops[0]),
+            ("spans", spans.straight),
+            ("spans: tile", spans.loops[0]),
+            ("spans: plane", spans.loops[1]),
+            ("spans: joint", spans.loops[2]),
+            ("march: law", law.straight),
+            ("march: depth of a law", depth.straight.minus(law.straight)),
+            ("march: bloom", bloom.straight.minus(without_bloom.straight)),
+            ("march: short way", short.straight),
+            ("march: short step", short.loops[0]),
+            ("march: long way", long),
+            ("march: segment", segments.loops[1]),
+            ("march: event", event),
+            ("march: fill", fill.total().minus(events.total())),
+            ("march: crossing", all.loops[2]),
+        ];
+        Ok(Costs { lanes: all.lanes, parts })
+    }
+
+    /// Returns the cost of running a part once.
+    fn part(&self, name: &str) -> Work {
+        let found = self.parts.iter().find(|(part, _)| *part == name);
+        found.unwrap_or_else(|| panic!("no part of gather is called {name}")).1
+    }
+
+    /// Returns a lower bound of what a wave executes for each of its pixels: each part as often as the pixel that runs
+    /// it most often. Lanes that run parts at different times also wait for each other, which is not counted.
+    fn march(&self, trips: Trips, march: March) -> Work {
+        let runs = [
+            ("march: law", trips.law),
+            ("march: depth of a law", if march.depth { trips.law } else { 0.0 }),
+            // Both ways end with it.
+            ("march: bloom", if march.bloom { trips.law + trips.searches } else { 0.0 }),
+            ("march: short way", trips.searches),
+            ("march: short step", trips.short),
+            ("march: long way", trips.takes_long_way),
+            ("march: segment", trips.segments),
+            ("march: event", trips.events),
+            ("march: crossing", trips.crossings),
+            ("march: fill", trips.holes),
+        ];
+        runs.iter().fold(Work::default(), |sum, (part, times)| sum.plus(*times, self.part(part)))
+    }
+}
+
+/// Returns the trips of the loop of the second pass (`synthesis/gather/spans.frag`), as the mean over the target's
+/// columns of tiles.
+fn span_trips(views: &SynthesisViews) -> f64 {
+    let warp = &views.warp;
+    let Uniforms { near_displacement, far_displacement, .. } = Uniforms::new(warp, [0, 0]);
+    let tile = f64::from(TILE[0]);
+    let last_tile = f64::from(warp.source_size[0].div_ceil(TILE[0]) - 1);
+    let columns = warp.target_size[0].div_ceil(TILE[0]);
+    let trips = (0..columns).map(|column| {
+        let first = f64::from(column) * tile;
+        let from =
+            (((first - f64::from(near_displacement) - 1.0) / tile).floor() - 1.0).clamp(0.0, last_tile);
+        let to = ((first + tile - f64::from(far_displacement)) / tile).floor().clamp(0.0, last_tile);
+        (to - from + 1.0).max(0.0)
+    });
+    trips.sum::<f64>() / f64::from(columns)
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len().max(1) as f64;
+    values.sum::<f64>() / count
+}
+
+/// Counts how often parts of `gather` run.
+pub struct Counter {
+    counting: Gather,
+    targets: ViewTargets,
+    counts: RenderTarget,
+}
+
+impl Counter {
+    /// Compiles the counting pipeline, for views whose nearest depth is had in this way.
+    ///
+    /// # Errors
+    /// If the driver refuses it.
+    pub fn new(gl: &Rc<Context>, depth: NearestDepth) -> anyhow::Result<Counter> {
+        let options = Options { depth_pairs: depth == NearestDepth::Carried, ..Options::default() };
+        Ok(Counter {
+            counting: Gather::new(gl, &options, Outputs::default())?,
+            targets: ViewTargets::default(),
+            counts: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?,
+        })
+    }
+
+    /// Counts for views whose depth is reversed, since no other can be carried.
+    ///
+    /// # Errors
+    /// If the eyes cannot be synthesized, or GL refuses.
+    pub fn count(&mut self, scene: &mut PreparedScene, views: SynthesisViews) -> anyhow::Result<Counted> {
+        scene.synthesize(&mut self.counting, &mut self.targets, &views, &mut self.counts)?;
+        Ok(Counted { pixels: self.counts.read_rgba8(0, [0, 0], views.target.size), views })
+    }
+}
+
+/// The counts of a synthesized view, row by row.
+pub struct Counted {
+    pub views: SynthesisViews,
+    pixels: Vec<u8>,
+}
+
+/// What `gather` executes for each pixel of a synthesized view on a GPU.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Executed {
+    /// Issue slots of the first pass, the second and the third.
+    pub slots: [f64; 3],
+    /// Texture instructions of all three.
+    pub fetches: f64,
+    /// Bytes that they read and write, counting every texel once.
+    pub bytes: f64,
+}
+
+impl Counted {
+    /// Returns the largest counts in each wave.
+    fn waves(&self, wave: [u32; 2]) -> Vec<Trips> {
+        let pixels = self.pixels.as_chunks().0.iter();
+        combine(pixels, self.views.target.size[0], wave, |largest: &mut Trips, pixel| {
+            *largest = largest.max(Trips::of(*pixel))
+        })
+    }
+
+    /// Returns the share of the pixels whose tile has a law, 0 to 1.
+    pub fn laws(&self) -> f64 {
+        mean(self.waves([1, 1]).iter().map(|trips| trips.law))
+    }
+
+    /// Returns what a GPU executes with this variant of the march.
+    ///
+    /// # Errors
+    /// If the table of costs lacks a program.
+    pub fn executed(&self, device: &Device, depth: NearestDepth, variant: March) -> anyhow::Result<Executed> {
+        let costs = Costs::of(device.gpu, depth == NearestDepth::Carried)?;
+        let waves = self.waves(wave_size(costs.lanes));
+        let march: Vec<Work> = waves.iter().map(|wave| costs.march(*wave, variant)).collect();
+        let march = Work {
+            slots: mean(march.iter().map(|work| work.slots)),
+            fetches: mean(march.iter().map(|work| work.fetches)),
+        };
+        let tile = 1.0 / f64::from(TILE[0] * TILE[1]);
+        let looped = |pass: &str, trips: f64, body: &str| costs.part(pass).plus(trips, costs.part(body));
+        let wider = f64::from(self.views.warp.source_size[0]) / f64::from(self.views.target.size[0]);
+        let tiles = Work::default().plus(tile * wider, looped("tiles", TILE_TRIPS, "tiles: two rows"));
+        let spans = looped("spans", span_trips(&self.views), "spans: tile")
+            .plus(LAW_TILES, costs.part("spans: plane"))
+            .plus(LAW_TILES - 1.0, costs.part("spans: joint"));
+        let spans = Work::default().plus(tile, spans);
+        Ok(Executed {
+            slots: [tiles.slots, spans.slots, march.slots],
+            fetches: tiles.fetches + spans.fetches + march.fetches,
+            bytes: BYTES + DEPTH_BYTES * (1.0 - self.laws()),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpus::GPUS;
+    use yoro::eyes::{EyeOptions, GuardBand, Pose};
+
+    #[test]
+    fn all_devices_have_all_parts() {
+        for device in GPUS {
+            let costs = Costs::of(device.gpu, false).unwrap();
+            let law = costs.part("march: law");
+            let short = costs.part("march: short way");
+            assert!(short.slots > law.slots && law.slots > 15.0, "{}: {short:?}, {law:?}", device.name);
+            assert!(short.fetches > law.fetches && law.fetches >= 2.0, "{}: {short:?}", device.name);
+            for part in ["tiles", "tiles: two rows", "spans", "spans: tile", "spans: plane", "spans: joint"] {
+                assert!(costs.part(part).slots > 0.0, "{}: {part}", device.name);
+            }
+            for part in ["short step", "long way", "segment", "event", "crossing", "fill"] {
+                let slots = costs.part(&format!("march: {part}")).slots;
+                assert!((15.0..250.0).contains(&slots), "{}: {slots} slots of {part}", device.name);
+            }
+        }
+        assert!(Costs::of("a999", false).is_err());
+    }
+
+    #[test]
+    fn a_wave_runs_each_part_as_often_as_one_of_its_pixels() {
+        let mut pixels = vec![0u8; 6 * 3 * 4];
+        let mut set = |x: usize, y: usize, counts: [u8; 4]| {
+            pixels[(y * 6 + x) * 4..][..4].copy_from_slice(&counts);
+        };
+        // All tiles have a law, except at three pixels.
+        for y in 0..3 {
+            (0..6).for_each(|x| set(x, y, [32, 0, 0, 0]));
+        }
+        set(0, 0, [3, 0, 0, 0]);
+        set(3, 2, [1 | 8 | 16, 9, 2, 7]);
+        set(5, 1, [2, 0, 0, 0]);
+        let pair = EyeOptions { size: [6, 3], ..EyeOptions::default() }.pair(Pose::IDENTITY);
+        let counts = Counted { pixels, views: pair.synthesis_views(GuardBand::None).unwrap() };
+        let short = Trips { law: 1.0, searches: 1.0, short: 2.0, ..Trips::default() };
+        let long = Trips {
+            short: 3.0,
+            takes_long_way: 1.0,
+            segments: 9.0,
+            events: 2.0,
+            crossings: 7.0,
+            holes: 1.0,
+            ..short
+        };
+        assert_eq!(counts.waves([4, 4]), [long, short]);
+        assert_eq!(counts.waves([1, 1]).len(), 18);
+    }
+
+    #[test]
+    fn the_work_of_parts_adds_up() {
+        let body = |slots, fetches| Work { slots, fetches };
+        let parts = vec![
+            ("march: law", body(30.0, 2.0)),
+            ("march: depth of a law", body(5.0, 2.0)),
+            ("march: bloom", body(50.0, 1.0)),
+            ("march: short way", body(80.0, 3.0)),
+            ("march: short step", body(20.0, 1.0)),
+            ("march: long way", body(90.0, 2.0)),
+            ("march: segment", body(60.0, 2.0)),
+            ("march: event", body(40.0, 0.0)),
+            ("march: crossing", body(70.0, 1.0)),
+            ("march: fill", body(75.0, 8.0)),
+        ];
+        let costs = Costs { lanes: 128, parts };
+        let lawful = Trips { law: 1.0, ..Trips::default() };
+        assert_eq!(costs.march(lawful, March::default()), body(30.0, 2.0));
+        assert_eq!(costs.march(lawful, March { bloom: true, depth: true }), body(85.0, 5.0));
+        let short = Trips { searches: 1.0, short: 2.0, ..Trips::default() };
+        assert_eq!(costs.march(short, March::default()), body(80.0 + 40.0, 3.0 + 2.0));
+        let long =
+            Trips { takes_long_way: 1.0, segments: 3.0, events: 2.0, crossings: 1.0, holes: 1.0, ..short };
+        let slots = 80.0 + 40.0 + 90.0 + 180.0 + 80.0 + 70.0 + 75.0;
+        assert_eq!(costs.march(long, March::default()), body(slots, 3.0 + 2.0 + 2.0 + 6.0 + 1.0 + 8.0));
+    }
+}

@@ -1,0 +1,242 @@
+//! `cargo xtask maintain estimate`: what whole stereo frames cost on mobile GPUs that are not here.
+//!
+//! Frames are rendered here and recorded: their passes and images, and the samples that pass each depth test. `costs` has
+//! what Mesa's compilers make of each shader, `traffic` what a tile-based GPU moves between its tiles and memory, `lamps`
+//! the number of lights that a wave computes, `gather` what the synthesis executes, and `model` adds these up.
+
+mod costs;
+mod gather;
+mod gpus;
+mod lamps;
+mod model;
+mod tables;
+mod traffic;
+mod waves;
+
+use std::rc::Rc;
+
+use anyhow::ensure;
+use clap::Parser;
+
+use crate::gather::{Counted, Counter, Executed, March};
+use crate::gpus::GPUS;
+use crate::lamps::Lamps;
+use crate::model::{Frame, FrameModel, MULTIVIEW, SIZE};
+use crate::tables::Estimate;
+use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, EyePair, FoveationLevel, Gaze, GuardBand};
+use yoro_assets::ShadingStyle;
+use yoro_context::{Backend, Headless};
+use yoro_gl::{Capabilities, Context};
+use yoro_render::stereo::{LevelFrame, Method, SelectedMethod, StereoMethod as _, StereoOptions};
+use yoro_render::{DepthReader, PreparedScene, RenderSettings, Selection, ViewTargets};
+use yoro_scenes::{BUILTINS, DEFAULT_SEED};
+use yoro_test_support::record::{Command, Recorder};
+use yoro_viewer::render_settings;
+
+/// Slots and bytes of whole stereo frames, by two renders, multiview and synthesis
+#[derive(Parser)]
+struct Args {
+    /// Built-in scenes [default: all]
+    scenes: Vec<String>,
+    /// Width of each eye's image in pixels
+    #[arg(long, default_value_t = SIZE[0])]
+    width: u32,
+    /// Height of each eye's image in pixels
+    #[arg(long, default_value_t = SIZE[1])]
+    height: u32,
+    /// Vertical field of view in degrees
+    #[arg(long, default_value_t = 60.0)]
+    fov_y_degrees: f32,
+    /// Viewpoints of each scene, spread over its camera path
+    #[arg(long, default_value_t = 3)]
+    viewpoints: usize,
+}
+
+/// Methods whose frames are recorded, by their names in the tables.
+const METHODS: [(&str, Method); 3] = [
+    ("conventional", Method::Conventional),
+    (MULTIVIEW, Method::Instanced),
+    ("yoro-gather", Method::Synthesized),
+];
+/// Methods that are recorded with two levels of foveation.
+const FOVEATED: [(&str, Method); 2] =
+    [("conventional-medium", Method::Conventional), ("yoro-medium", Method::Synthesized)];
+/// The passes of `gather`.
+const PASSES: [&str; 3] = ["gather tiles", "gather spans", "gather march"];
+
+fn main() -> anyhow::Result<()> {
+    let args = Args::parse();
+    ensure!(
+        std::env::var_os("YORO_SHADERS").is_some(),
+        "the shaders must count what they run: use cargo xtask maintain estimate"
+    );
+    let scenes = BUILTINS.iter().filter(|b| args.scenes.is_empty() || args.scenes.iter().any(|s| s == b.name));
+    let mut estimates = Vec::new();
+    for builtin in scenes {
+        eprintln!("counting {}", builtin.name);
+        // A renderer that cannot read samples carries depth through their average, as phones do where they live in tiles.
+        // Outlines need all samples, which phones read by OpenGL ES 3.1. Desktop GL counts samples.
+        let limit: fn(&mut Capabilities) = match builtin.style {
+            ShadingStyle::Anime => |_| {},
+            _ => |capabilities| capabilities.multisample_textures = false,
+        };
+        let headless = Headless::open_limited(Backend::Osmesa, limit)?;
+        for (label, bloom) in [("bloom", true), ("no bloom", false)] {
+            estimates.extend(Estimator::new(headless.gl(), &args, builtin.name, bloom)?.estimates(&args, label)?);
+        }
+    }
+    ensure!(!estimates.is_empty(), "no built-in scene is called so");
+    let size = [args.width, args.height];
+    print!("{}", tables::report(estimates, size).to_markdown());
+    Ok(())
+}
+
+/// A scene and what counts its frames.
+struct Estimator {
+    gl: Rc<Context>,
+    /// Made before the scene, since it must know its textures.
+    recorder: Recorder,
+    scene: PreparedScene,
+    name: &'static str,
+    settings: RenderSettings,
+    counter: Counter,
+    model: FrameModel,
+}
+
+impl Estimator {
+    fn new(gl: &Rc<Context>, _: &Args, name: &'static str, bloom: bool) -> anyhow::Result<Estimator> {
+        // Phones render with the viewer's settings.
+        let settings = RenderSettings { bloom, ..render_settings(&Default::default(), None) };
+        let recorder = Recorder::new(gl);
+        let scene = PreparedScene::new(gl, yoro_scenes::load(name, DEFAULT_SEED, None)?, &settings)?;
+        let counter = Counter::new(gl, scene.renderer.nearest_depth())?;
+        Ok(Estimator { gl: gl.clone(), recorder, scene, name, settings, counter, model: FrameModel::new()? })
+    }
+
+    fn estimates(&mut self, args: &Args, label: &'static str) -> anyhow::Result<Vec<Estimate>> {
+        let eyes = EyeOptions {
+            size: [args.width, args.height],
+            fov_y: args.fov_y_degrees.to_radians(),
+            ..EyeOptions::default()
+        };
+        let viewpoints = self.scene.scene.viewpoints.clone();
+        let wanted = args.viewpoints.clamp(1, viewpoints.len());
+        let mut estimates: Vec<Estimate> = Vec::new();
+        for i in 0..wanted {
+            let pair = eyes.pair(viewpoints[i * viewpoints.len() / wanted].pose());
+            for (name, frame) in self.frames(&pair)? {
+                match estimates.iter_mut().find(|estimate| estimate.method == name) {
+                    Some(estimate) => estimate.frames.push(frame),
+                    None => {
+                        let (scene, frames) = (self.name, vec![frame]);
+                        estimates.push(Estimate { scene, label, method: name, frames });
+                    }
+                }
+            }
+        }
+        Ok(estimates)
+    }
+
+    /// Returns the costs of each method's frame at one place.
+    fn frames(&mut self, pair: &EyePair) -> anyhow::Result<Vec<(&'static str, Frame)>> {
+        let mut lamps = self.lamps(pair)?;
+        let mut frames = Vec::new();
+        let whole = [(self.counter.count(&mut self.scene, reversed(pair).synthesis_views(GuardBand::Distance(1.0))?)?, 1.0)];
+        for (name, method) in METHODS {
+            let commands = self.record(method, pair, FoveationLevel::Off)?;
+            let counted = if method == Method::Synthesized { &whole[..] } else { &[] };
+            let mut frame = match name {
+                MULTIVIEW => self.model.multiview(&commands, pair.size, &mut lamps)?,
+                _ => self.model.frame(&commands, pair.size, &mut lamps, laws(counted))?,
+            };
+            self.add_synthesis(&mut frame, &commands, counted)?;
+            frames.push((name, frame));
+        }
+        for (name, method) in FOVEATED {
+            let commands = self.record(method, pair, FoveationLevel::Medium)?;
+            let counted = if method == Method::Synthesized { self.levels(pair)? } else { Vec::new() };
+            let mut frame = self.model.frame(&commands, pair.size, &mut lamps, laws(&counted))?;
+            self.add_synthesis(&mut frame, &commands, &counted)?;
+            frames.push((name, frame));
+        }
+        Ok(frames)
+    }
+
+    /// Returns the commands of a method's first frame.
+    fn record(&mut self, method: Method, pair: &EyePair, level: FoveationLevel) -> anyhow::Result<Vec<Command>> {
+        let inset = level.foveation().map(|foveation| foveation.nearest);
+        let options = StereoOptions { policy: None, inset, ..StereoOptions::default() };
+        let mut selected = SelectedMethod::new(&self.gl, method.into(), &self.settings, &options)?;
+        let axes = Gaze::Axes(pair.axes());
+        let levels = pair.levels(level.foveation().as_ref(), axes, options.guard_band)?;
+        let mut frame = LevelFrame::new(&self.gl, false)?;
+        let to = frame.fit(&levels)?;
+        let PreparedScene { renderer, scene } = &mut self.scene;
+        selected.prepare(renderer, scene)?;
+        self.recorder.start();
+        let eyes = if levels.inset.is_some() { (&levels).into() } else { pair.into() };
+        selected.render_levels(renderer, scene, &eyes, &to)?;
+        Ok(self.recorder.take())
+    }
+
+    /// Counts the synthesis of each level, with its share of the eye's pixels.
+    fn levels(&mut self, pair: &EyePair) -> anyhow::Result<Vec<(Counted, f64)>> {
+        let level = FoveationLevel::Medium.foveation();
+        let guard = StereoOptions::default().guard_band;
+        let pair = reversed(pair);
+        let levels = pair.levels(level.as_ref(), Gaze::Axes(pair.axes()), guard)?;
+        let pixels = |size: [u32; 2]| f64::from(size[0]) * f64::from(size[1]);
+        let mut counted = Vec::new();
+        for level in [Some(levels.wide), levels.inset].into_iter().flatten() {
+            let share = pixels(level.views.target.size) / pixels(pair.size);
+            counted.push((self.counter.count(&mut self.scene, level.views)?, share));
+        }
+        Ok(counted)
+    }
+
+    /// Adds what the synthesis executes.
+    fn add_synthesis(
+        &self,
+        frame: &mut Frame,
+        commands: &[Command],
+        counted: &[(Counted, f64)],
+    ) -> anyhow::Result<()> {
+        let depth = self.scene.renderer.nearest_depth();
+        for gpu in GPUS {
+            for (level, share) in counted {
+                let Executed { slots, fetches, bytes } = level.executed(&gpu, depth, March::of(commands))?;
+                let passes = PASSES.into_iter().zip(slots);
+                let alone = passes.map(|(pass, slots)| (format!("slots/{}/{pass}", gpu.gpu), slots));
+                let rest = [("fetches", fetches), ("traffic", bytes)]
+                    .map(|(name, value)| (format!("{}{name}/{}", tables::SYNTHESIS_ALONE, gpu.gpu), value));
+                for (metric, value) in alone.chain(rest) {
+                    *frame.entry(metric).or_default() += share * value;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the lights that reach the surfaces visible to the dominant eye.
+    fn lamps(&mut self, pair: &EyePair) -> anyhow::Result<Lamps> {
+        let view = reversed(pair).view(pair.dominant);
+        let mut targets = ViewTargets::default();
+        let PreparedScene { renderer, scene } = &mut self.scene;
+        let rendered = renderer.render(&mut targets, scene, &view, Selection::All)?;
+        let mut reader = DepthReader::new(&self.gl)?;
+        reader.copy(&rendered.depth, view.size)?;
+        Ok(Lamps::new(&view, &reader.read(), &scene.lights))
+    }
+}
+
+/// Returns the share of the synthesized pixels whose tile has a law.
+fn laws(counted: &[(Counted, f64)]) -> f64 {
+    let all: f64 = counted.iter().map(|(_, share)| share).sum();
+    counted.iter().map(|(level, share)| share * level.laws()).sum::<f64>() / all.max(f64::MIN_POSITIVE)
+}
+
+/// Returns the eyes with the only depth that can be carried.
+fn reversed(pair: &EyePair) -> EyePair {
+    let depth = DepthRange { convention: DepthConvention::Reversed, ..pair.depth };
+    EyePair { depth, ..*pair }
+}

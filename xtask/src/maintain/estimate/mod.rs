@@ -1,0 +1,362 @@
+//! `cargo xtask maintain estimate`: what whole frames cost on mobile GPUs that are not here, and the shaders' own costs.
+//!
+//! The library builds all programs in a context on this machine, `shader-programs` of tests/ prints their texts, and
+//! [`Compilers`] compile them. The results are compared with `xtask/helpers/estimate/shader-cost.csv`, from which the
+//! program in that folder computes the cost of frames that it renders and counts. See docs/performance.md.
+
+mod compilers;
+mod gpus;
+mod listing;
+mod patches;
+mod table;
+
+use std::collections::VecDeque;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::sync::Mutex;
+use std::thread;
+
+use anyhow::{Context as _, bail, ensure};
+use serde_json::Value;
+
+pub use compilers::Compilers;
+pub use gpus::Gpu;
+
+use crate::cargo;
+use crate::folders::{root, write};
+
+use compilers::Run;
+use gpus::{GPUS, IN_TABLE};
+pub use table::{Row, Table};
+
+/// The committed table, relative to the workspace.
+const TABLE: &str = "xtask/helpers/estimate/shader-cost.csv";
+
+/// An accepted fault of a program on a GPU.
+struct Exception {
+    /// The GPU, as in [`Row::gpu`].
+    gpu: &'static str,
+    /// How [`Row::program`] begins.
+    program: &'static str,
+    fault: Fault,
+    reason: &'static str,
+}
+
+impl Exception {
+    /// True if the exception applies to this shader.
+    fn is_of(&self, row: &Row) -> bool {
+        self.gpu == row.gpu && row.program.starts_with(self.program)
+    }
+}
+
+/// A fault that a compiled program must not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fault {
+    Spills,
+    /// Fewer than half of the waves that the GPU can have in flight are in flight.
+    FewWaves,
+}
+
+/// The file that contains `EXCEPTIONS`, for messages.
+const EXCEPTIONS_IN: &str = "xtask/src/maintain/estimate/mod.rs";
+
+const EXCEPTIONS: [Exception; 1] = [Exception {
+    gpu: "a650",
+    program: "synthesis/gather/tiles.frag DEPTH_PAIRS",
+    fault: Fault::FewWaves,
+    reason: "it gathers twice as much; one fragment for each 128 pixels",
+}];
+
+/// Which programs and GPUs to compile for, and what to do with the results.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Compile only programs whose names contain this.
+    pub filter: Option<String>,
+    /// GPUs to use instead of those in the table.
+    pub gpus: Vec<Gpu>,
+    /// Update the table.
+    pub bless: bool,
+}
+
+/// Compiles programs, which are JSON as written by `shader-programs`, and compares the results with the table. Returns
+/// a text, and true if no program has a fault.
+///
+/// # Errors
+/// Fails if the compilers do not work, or no program matches the filter.
+pub fn report(
+    options: &Options,
+    compilers: &Compilers,
+    programs: Vec<Value>,
+) -> anyhow::Result<(String, bool)> {
+    let gpus = if options.gpus.is_empty() { GPUS[..IN_TABLE].to_vec() } else { options.gpus.clone() };
+    let programs = chosen(programs, options.filter.as_deref())?;
+    let names: Vec<String> = programs.iter().map(|program| text_of(program, "name")).collect();
+    let file = compilers.folder().join(format!("programs-{}.json", std::process::id()));
+    write(&file, serde_json::to_string(&programs)?)?;
+    let runs = compile(compilers, &gpus, &file);
+    fs::remove_file(&file).ok();
+    let mut found = Table::default();
+    let mut faults = Vec::new();
+    for (gpu, run) in gpus.iter().zip(runs?) {
+        faults.extend(refusals(gpu, &names, &run));
+        for (program, said) in programs.iter().zip(&run.programs).filter(|(_, said)| said.ok) {
+            let mut rows = Row::all(gpu, &text_of(program, "name"), said);
+            // The cost of three vertices is negligible.
+            let vertex = text_of(&program["stages"][0], "file");
+            let screen = ["screen.vert", "synthesis/march.vert"].contains(&vertex.as_str());
+            rows.retain(|row| !screen || row.stage == "fragment");
+            found.rows.extend(rows);
+        }
+        found.mesa = run.mesa;
+    }
+    let path = root().join(TABLE);
+    let committed = match fs::read_to_string(&path) {
+        Ok(text) => {
+            Table::parse(&text).with_context(|| format!("{TABLE} is damaged: restore it from git"))?
+        }
+        Err(_) => Table::default(),
+    };
+    let mut text = described(&gpus, &found, &committed) + "\n";
+    for finding in found.rows.iter().filter_map(judge) {
+        match finding {
+            Finding::Fault(fault) => faults.push(fault),
+            Finding::Accepted(what) => text += &format!("accepted: {what}\n"),
+        }
+    }
+    for Exception { program, gpu, .. } in stale(&found.rows) {
+        text += &format!("{program} needs no exception on {gpu} any more: remove it from {EXCEPTIONS_IN}\n");
+    }
+    for fault in &faults {
+        text += &format!("FAULT: {fault}\n");
+    }
+    if options.bless {
+        let mut table = committed;
+        // Rows of removed programs are only deleted if all programs have been compiled.
+        table.rows.retain(|row| options.filter.is_some() || !gpus.iter().any(|gpu| gpu.name == row.gpu));
+        table.mesa = found.mesa;
+        table.take_over(found.rows);
+        write(&path, table.to_text())?;
+        text += &format!("{TABLE} renewed: look at `git diff -- {TABLE}`\n");
+    }
+    Ok((text, faults.is_empty()))
+}
+
+/// Returns the texts of all programs, as written by `shader-programs` of tests/, and of the march in parts.
+///
+/// # Errors
+/// Fails if it does not compile or run.
+pub fn programs() -> anyhow::Result<Vec<Value>> {
+    cargo::succeeds(&["xtask", "setup"], &[]);
+    let text = cargo::output(&["run", "--quiet", "--package", "yoro-tests", "--bin", "shader-programs"])?;
+    let programs = serde_json::from_str(&text);
+    let mut programs = programs.context("shader-programs has written something else than a list of programs")?;
+    patches::add_parts(&mut programs)?;
+    Ok(programs)
+}
+
+/// Returns what whole frames cost. `arguments` are those of the program in `xtask/helpers/estimate`.
+///
+/// # Errors
+/// Fails if it does not compile or run.
+pub fn frames(arguments: &[String]) -> anyhow::Result<String> {
+    let mut command = cargo::program("yoro-estimate")?;
+    command.args(arguments).env("YORO_SHADERS", patches::counting_shaders()?).stderr(Stdio::inherit());
+    let output = command.output().context("yoro-estimate cannot be started")?;
+    ensure!(output.status.success(), "yoro-estimate failed: see above");
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+fn chosen(mut programs: Vec<Value>, filter: Option<&str>) -> anyhow::Result<Vec<Value>> {
+    if let Some(filter) = filter {
+        programs.retain(|program| text_of(program, "name").contains(filter));
+    }
+    if programs.is_empty() {
+        bail!("no shader program is called so: say less of its name, such as gather");
+    }
+    Ok(programs)
+}
+
+fn text_of(value: &Value, name: &str) -> String {
+    value[name].as_str().unwrap_or_default().to_owned()
+}
+
+/// Compiles on all processors. Returns the runs in the order of the GPUs.
+fn compile(compilers: &Compilers, gpus: &[Gpu], programs: &Path) -> anyhow::Result<Vec<Run>> {
+    let waiting: Mutex<VecDeque<(usize, &Gpu)>> = Mutex::new(gpus.iter().enumerate().collect());
+    let done = Mutex::new(Vec::new());
+    let processors = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        for _ in 0..processors.min(gpus.len()) {
+            scope.spawn(|| {
+                // A panic in another thread leaves the queue intact.
+                let next = || waiting.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop_front();
+                while let Some((place, gpu)) = next() {
+                    eprintln!("compiling for {}", gpu.title);
+                    let run = compilers.run(gpu, programs);
+                    done.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((place, run));
+                }
+            });
+        }
+    });
+    let mut done = done.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    done.sort_by_key(|(place, _)| *place);
+    done.into_iter().map(|(_, run)| run).collect()
+}
+
+/// Returns messages about programs that do not compile or link, or that crash the compiler.
+fn refusals(gpu: &Gpu, names: &[String], run: &Run) -> Vec<String> {
+    let refused = names.iter().zip(&run.programs).filter(|(_, said)| !said.ok);
+    let mut faults: Vec<String> = refused
+        .map(|(name, said)| format!("{name} is refused on {}: {}", gpu.title, said.log.replace('\n', "; ")))
+        .collect();
+    if let Some(name) = names.get(run.programs.len()) {
+        faults.push(format!("{name} crashes the compiler for {}; what follows was not compiled", gpu.title));
+    }
+    faults
+}
+
+/// A described fault of a compiled shader.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Finding {
+    /// The fault is an error.
+    Fault(String),
+    /// The fault is known and has a reason.
+    Accepted(String),
+}
+
+fn fault(row: &Row) -> Option<Fault> {
+    let most = row.gpu.parse::<Gpu>().ok()?.compiler.most_waves();
+    if row.spills > 0 { Some(Fault::Spills) } else { (2 * row.waves < most).then_some(Fault::FewWaves) }
+}
+
+/// Returns a description of a shader's fault, or `None` if it has none.
+fn judge(row: &Row) -> Option<Finding> {
+    let gpu: Gpu = row.gpu.parse().ok()?;
+    let fault = fault(row)?;
+    let what = match fault {
+        Fault::Spills => format!("spills: {} accesses to memory in the place of registers", row.spills),
+        Fault::FewWaves => format!("has only {} of {} waves in flight", row.waves, gpu.compiler.most_waves()),
+    };
+    let what = format!("{} ({}) on {} {what}", row.program, row.stage, gpu.title);
+    let exception = EXCEPTIONS.iter().find(|exception| exception.is_of(row) && exception.fault == fault);
+    Some(match exception {
+        Some(exception) => Finding::Accepted(format!("{what}: {}", exception.reason)),
+        None => {
+            Finding::Fault(format!("{what}: make it smaller, or name it with a reason in {EXCEPTIONS_IN}"))
+        }
+    })
+}
+
+/// Returns the exceptions whose shaders are among the rows and no longer have the fault.
+fn stale<'a>(rows: &'a [Row]) -> impl Iterator<Item = &'static Exception> + 'a {
+    EXCEPTIONS.iter().filter(|exception| {
+        let mut own = rows.iter().filter(|row| exception.is_of(row)).peekable();
+        own.peek().is_some() && !own.any(|row| fault(row) == Some(exception.fault))
+    })
+}
+
+/// Returns a paragraph per GPU, with a line for each shader and each change.
+fn described(gpus: &[Gpu], found: &Table, committed: &Table) -> String {
+    let width = found.rows.iter().map(|row| row.program.len()).max().unwrap_or(0);
+    let mut text = format!("Mesa {}; loops: issue slots/fetches of each body, once through\n", found.mesa);
+    if !committed.rows.is_empty() && committed.mesa != found.mesa {
+        text += &format!("{TABLE} was made by Mesa {}: changes are the compiler's, too\n", committed.mesa);
+    }
+    for gpu in gpus {
+        text += &format!(
+            "\n{} ({})\n{:width$}  {:8} {:>6} {:>5} {:>6} {:>6} {:>7} {:>6}  {}\n",
+            gpu.title,
+            gpu.name,
+            "program",
+            "stage",
+            "instr",
+            "slots",
+            "regs",
+            "waves",
+            "fetches",
+            "spills",
+            "loops; cycles",
+        );
+        for row in found.rows.iter().filter(|row| row.gpu == gpu.name) {
+            let optional = |number: Option<u32>| number.map_or_else(|| "-".to_owned(), |n| n.to_string());
+            let end = [row.loops.as_str(), row.cycles.as_str()].join("; ");
+            let old = committed.find(row);
+            let line = format!(
+                "{:width$}  {:8} {:>6} {:>5} {:>6} {:>6} {:>7} {:>6}  {}",
+                row.program,
+                row.stage,
+                row.instructions,
+                optional(row.slots),
+                row.registers,
+                format!("{}/{}", row.waves, gpu.compiler.most_waves()),
+                optional(row.fetches),
+                row.spills,
+                end.trim_matches([';', ' ']),
+            );
+            text += line.trim_end();
+            text += if old.is_none() { "  (new)\n" } else { "\n" };
+            let change = old.map(|old| row.change_from(old)).filter(|change| !change.is_empty());
+            if let Some(change) = change {
+                text += &format!("{:width$}  {change}\n", "");
+            }
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::compilers::DriverOutput;
+    use super::table::tests::row;
+    use super::*;
+
+    #[test]
+    fn spills_and_few_waves_are_faults_unless_accepted() {
+        let is_fault = |row: &Row| matches!(judge(row), Some(Finding::Fault(_)));
+        assert_eq!(judge(&row("a650", "x.frag", 8, 0)), None);
+        let Some(Finding::Fault(few)) = judge(&row("a650", "x.frag", 7, 0)) else { panic!("no fault") };
+        assert!(few.contains("7 of 16 waves"), "{few}");
+        assert!(is_fault(&row("g57", "x.frag", 2, 3)));
+        assert_eq!(judge(&row("g57", "x.frag", 1, 0)), None);
+        let known = judge(&row("a650", EXCEPTIONS[0].program, 7, 0));
+        assert!(matches!(known, Some(Finding::Accepted(_))), "{known:?}");
+        assert!(is_fault(&row("a650", EXCEPTIONS[0].program, 16, 2)));
+        assert!(is_fault(&row("g52", EXCEPTIONS[0].program, 0, 0)));
+    }
+
+    #[test]
+    fn exceptions_that_are_not_needed_are_listed() {
+        let of = |waves| stale(&[row("a650", EXCEPTIONS[0].program, waves, 0)]).count();
+        assert_eq!((of(7), of(8)), (0, 1));
+        assert_eq!(stale(&[]).count(), 0);
+    }
+
+    #[test]
+    fn refused_programs_and_crashes_are_faults() {
+        let said = |ok| DriverOutput { ok, log: "0:1: no".into(), messages: vec![], listing: String::new() };
+        let names = ["a", "b", "c", "d"].map(str::to_owned);
+        let run = Run { mesa: "26".into(), programs: vec![said(true), said(false)] };
+        let faults = refusals(&"g52".parse().unwrap(), &names, &run);
+        assert_eq!(faults.len(), 2, "{faults:?}");
+        assert!(faults[0].starts_with("b is refused on Mali-G52: 0:1: no"), "{}", faults[0]);
+        assert!(faults[1].starts_with("c crashes"), "{}", faults[1]);
+    }
+
+    #[test]
+    fn a_change_stands_below_its_row() {
+        let (old, new) = (row("a650", "x.frag", 10, 0), row("a650", "x.frag", 8, 0));
+        let found = Table { mesa: "26".into(), rows: vec![new, row("a650", "y.frag", 16, 0)] };
+        let committed = Table { mesa: "25".into(), rows: vec![old] };
+        let text = described(&["a650".parse().unwrap()], &found, &committed);
+        assert!(text.contains("changes are the compiler's, too"), "{text}");
+        assert!(text.contains("  waves 10 -> 8\n") && text.contains("(new)\n"), "{text}");
+    }
+
+    #[test]
+    fn a_filter_that_fits_nothing_is_refused() {
+        let programs = vec![serde_json::json!({"name": "render/sky.frag"})];
+        assert_eq!(chosen(programs.clone(), Some("sky")).unwrap().len(), 1);
+        assert!(chosen(programs, Some("march")).is_err());
+    }
+}
