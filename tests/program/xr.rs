@@ -20,8 +20,8 @@ use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
     Aim, At, Event, Eye as ScriptEye, Fault, Input, Insets, POISON, Pictures, Script, State, VARIABLE, What,
 };
-use yoro_render::stereo::{self, Method, StereoFrame};
-use yoro_render::{GpuScene, Renderer};
+use yoro_render::stereo::{Method, StereoFrame, StereoSession};
+use yoro_render::PreparedScene;
 use yoro_settings::Settings;
 use yoro_viewer::{render_settings, stereo_options};
 
@@ -504,13 +504,12 @@ fn canted_and_unequal_eyes_are_drawn_completely() {
 fn desktop(scene: &str, method: Method, pair: &EyePair, settings: &Settings) -> [RgbImage; 2] {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let scene = GpuScene::upload(gl, yoro_scenes::build(scene, yoro_scenes::DEFAULT_SEED).unwrap()).unwrap();
+    let scene = yoro_scenes::build(scene, yoro_scenes::DEFAULT_SEED).unwrap();
     let (render, options) = (render_settings(settings, None), stereo_options(settings, settings.pipeline));
-    let mut renderer = Renderer::new(gl, &render, &scene).unwrap();
-    let mut method = stereo::create(gl, method, &render, &options).unwrap();
-    method.prepare(&mut renderer, &scene).unwrap();
+    let mut scene = PreparedScene::new(gl, scene, &render).unwrap();
+    let mut session = StereoSession::new(gl, method.into(), &render, &options).unwrap();
     let mut frame = StereoFrame::new(gl, pair.size).unwrap();
-    method.render(&mut renderer, &scene, pair, &mut frame).unwrap();
+    session.frame(&mut scene, &(*pair).into(), frame.fit(pair.size).unwrap(), None).unwrap();
     Eye::BOTH.map(|eye| rgb_image(&frame.rgba(eye), frame.size()))
 }
 
