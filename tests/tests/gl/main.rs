@@ -1,6 +1,5 @@
 //! Tests on a real GL context: golden images, shader variants and costs, GL objects.
 
-mod frame_passes;
 mod golden;
 mod methods;
 mod multiview;

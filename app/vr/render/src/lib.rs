@@ -13,6 +13,6 @@ mod view;
 
 pub use prepared::PreparedScene;
 pub use view::{
-    DepthCopy, DepthImage, DepthReader, GpuScene, MAX_POINT_LIGHTS, MSAA, NearestDepth, PASSES, Pass,
-    RenderSettings, RenderedView, Renderer, Selection, TilePart, ViewReader, ViewTargets,
+    DepthCopy, DepthImage, DepthReader, GpuScene, MAX_POINT_LIGHTS, MSAA, NearestDepth,
+    RenderSettings, RenderedView, Renderer, Selection, ViewReader, ViewTargets,
 };
