@@ -33,7 +33,7 @@ const MAX_LIBRARY: u64 = 64 << 20;
 /// # Errors
 /// [`SceneError`] if the file cannot be read or parsed, or a texture exists but is damaged.
 pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
-    let file = yoro_files::open(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
+    let file = yoro_files::open(path).map_err(SceneError::read(path))?;
     let parsed = Parser::new(path).read(BufReader::with_capacity(1 << 20, file))?;
     if parsed.has_curves {
         log::warn!("{}: curves and surfaces are left out; export them as polygons", path.display());
@@ -266,11 +266,16 @@ impl<'a> Parser<'a> {
     }
 
     fn fault(&self, what: impl Into<String>) -> SceneError {
-        SceneError::Statement { path: self.path.into(), line: self.line, what: what.into() }
+        SceneError::Unusable(format!(
+            "{}, line {}: {}; correct the line or export the model again",
+            self.path.display(),
+            self.line,
+            what.into()
+        ))
     }
 
     fn too_large(&self, what: &'static str) -> SceneError {
-        SceneError::TooLarge { path: self.path.into(), limit: MAX_ELEMENTS, what }
+        SceneError::too_large(self.path, MAX_ELEMENTS, what)
     }
 
     fn counts(&self) -> [usize; 3] {
@@ -287,7 +292,7 @@ impl<'a> Parser<'a> {
         loop {
             let start = statement.len();
             let read = input.by_ref().take((MAX_STATEMENT - start) as u64).read_until(b'\n', statement);
-            let count = read.map_err(|source| SceneError::Read { path: self.path.into(), source })?;
+            let count = read.map_err(SceneError::read(self.path))?;
             if count == 0 {
                 return Ok(start > 0);
             }
@@ -409,9 +414,8 @@ impl<'a> Parser<'a> {
 
     /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. An index may name what comes later in the file.
     fn corner(&mut self, word: &str) -> Result<Corner, SceneError> {
-        let malformed = |parser: &Self| {
-            parser.fault(format!("`{}` is not the corner of a face", mtl::abridged(word)))
-        };
+        let malformed =
+            |parser: &Self| parser.fault(format!("`{}` is not the corner of a face", mtl::abridged(word)));
         let mut corner = [MISSING; 3];
         let mut texts = word.split('/');
         for (kind, (slot, count)) in corner.iter_mut().zip(self.counts()).enumerate() {

@@ -31,24 +31,24 @@ const ROUND_TRIP_WINDOW: f64 = 5.0;
 /// factor, at most the last.
 const SLACK: f64 = 0.01;
 const NOISE: f64 = 3.0;
-const MOST_SLACK: f64 = 0.12;
+const MAX_SLACK: f64 = 0.12;
 /// For so many arrivals in a row, too much is on its way because of the rate: for fewer, because of one late frame.
 const LONG_FULL: u32 = 3;
 /// A frame that is due for this long in s when it is made was requested too late to be made at once.
 const LATE_REQUEST: f64 = 0.003;
 /// The longest time in s between two requests that make frames larger, and the weight of a new time in the mean.
-const LONGEST_INTERVAL: f64 = 0.2;
+const MAX_INTERVAL: f64 = 0.2;
 const REQUESTED_WEIGHT: f64 = 0.1;
 /// If nothing is requested for this long in s, earlier frames say nothing about the present.
 const PAUSE: f64 = 1.0;
 /// The most frames that have arrived and are not decoded yet.
-const MOST_UNDECODED: usize = 4;
+const MAX_UNDECODED: usize = 4;
 /// If nothing arrives of what is on its way for this long, all of it is given up. The time doubles with each round that is given up, up to the
 /// longest, until a frame arrives.
 const GIVE_UP_TIMEOUT: Duration = Duration::from_millis(500);
-const LONGEST_TIMEOUT: Duration = Duration::from_secs(4);
+const MAX_TIMEOUT: Duration = Duration::from_secs(4);
 /// The most frames that are remembered.
-const MOST_REMEMBERED: usize = 256;
+const MAX_REMEMBERED: usize = 256;
 
 /// How frames get to a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,7 +167,7 @@ impl RateControl {
         }
         let undecoded = self.frames.iter().filter(|frame| frame.has_arrived && !frame.is_given_up).count();
         let in_flight = self.bytes_in_flight();
-        if undecoded > MOST_UNDECODED {
+        if undecoded > MAX_UNDECODED {
             return (false, false);
         }
         if in_flight == 0.0 {
@@ -177,7 +177,7 @@ impl RateControl {
         if self.round_trip.is_none() {
             return (false, false);
         }
-        let slack = (SLACK + NOISE * self.trend.noise() * 1e-3).min(MOST_SLACK);
+        let slack = (SLACK + NOISE * self.trend.noise() * 1e-3).min(MAX_SLACK);
         let expected = self.expected(self.needs_intra);
         let rate = self.rate.bytes_per_second();
         // A frame that takes longer than its interval waits for itself long enough.
@@ -229,7 +229,7 @@ impl RateControl {
             let passed = now - last.time;
             // It was due, but was not made at once.
             if self.due_since.take().is_some_and(|since| now - since > LATE_REQUEST) {
-                let interval = passed.clamp(self.interval, LONGEST_INTERVAL);
+                let interval = passed.clamp(self.interval, MAX_INTERVAL);
                 self.requested += REQUESTED_WEIGHT * (interval - self.requested);
             }
             if passed > PAUSE {
@@ -243,7 +243,7 @@ impl RateControl {
         *mean = Some(mean.map_or(size, |mean| mean + SIZE_WEIGHT * (size - mean)));
         let time = now;
         self.frames.push_back(Sent { number, time, bytes, is_intra, has_arrived: false, is_given_up: false });
-        if self.frames.len() > MOST_REMEMBERED {
+        if self.frames.len() > MAX_REMEMBERED {
             self.frames.pop_front();
         }
         self.debt = (self.debt_at(now) + bytes, now);
@@ -336,7 +336,7 @@ impl RateControl {
         if silence < self.give_up.as_secs_f64() {
             return false;
         }
-        self.give_up = (2 * self.give_up).min(LONGEST_TIMEOUT);
+        self.give_up = (2 * self.give_up).min(MAX_TIMEOUT);
         self.rate.give_up(silence, now);
         self.trend.forget();
         match self.delivery {

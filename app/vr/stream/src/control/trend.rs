@@ -15,9 +15,9 @@ const SMOOTHING: f64 = 0.7;
 const MOST: usize = 20;
 const FEWEST: usize = 6;
 const LONGEST: f64 = 600.0;
-/// What the slope is multiplied with before it is compared, for each of up to [`MOST_FRAMES`] frames.
+/// What the slope is multiplied with before it is compared, for each of up to [`MAX_FRAMES`] frames.
 const GAIN: f64 = 4.0;
-const MOST_FRAMES: f64 = 60.0;
+const MAX_FRAMES: f64 = 60.0;
 /// The first threshold in ms, its range, and how fast it follows values above and below it, per ms.
 const THRESHOLD: f64 = 12.5;
 const THRESHOLDS: [f64; 2] = [6.0, 600.0];
@@ -26,14 +26,14 @@ const FOLLOW_DOWN: f64 = 0.039;
 /// A value above the threshold by more than this is an outlier, which the threshold does not follow.
 const OUTLIER: f64 = 15.0;
 /// The longest time in ms by which the threshold is moved at once.
-const LONGEST_STEP: f64 = 100.0;
+const MAX_STEP: f64 = 100.0;
 /// A queue is one if it delays all frames of this time in ms, more than the fastest frame of the last one or two windows of
 /// this length in ms: by the time that a frame's own bytes may take, and the noise times a factor, but
 /// at most the last.
 const NEWEST: f64 = 1000.0;
 const WINDOW: f64 = 5000.0;
 const STANDING_NOISE: f64 = 2.0;
-const MOST_STANDING: f64 = 42.0;
+const MAX_STANDING: f64 = 42.0;
 /// A queue may have begun if it delays this many frames.
 const LATE: usize = 3;
 /// The weight of a new frame in the noise (the interarrival jitter of RFC 3550).
@@ -123,7 +123,7 @@ impl Trend {
 
     /// Returns by how much frames may be delayed without a queue, in ms.
     fn tolerated(&self) -> f64 {
-        (self.interval + STANDING_NOISE * self.noise).min(MOST_STANDING)
+        (self.interval + STANDING_NOISE * self.noise).min(MAX_STANDING)
     }
 
     /// Returns by how much the newest frame was delayed more than the fastest, in ms.
@@ -133,7 +133,7 @@ impl Trend {
 
     /// True if the newest frame was delayed by far more than the fastest.
     pub fn is_stalled(&self) -> bool {
-        self.newest() > 2.0 * MOST_STANDING + 3.0 * self.noise
+        self.newest() > 2.0 * MAX_STANDING + 3.0 * self.noise
     }
 
     /// Returns the mean difference between the delays of two frames in ms.
@@ -176,7 +176,7 @@ impl Trend {
         self.frames += 1.0;
         let variation = passed - (sent - last_sent);
         // A link that has become slower is no noise.
-        self.noise += NOISE_WEIGHT * (variation.abs().min(MOST_STANDING) - self.noise);
+        self.noise += NOISE_WEIGHT * (variation.abs().min(MAX_STANDING) - self.noise);
         self.delay += variation;
         self.smoothed = SMOOTHING * self.smoothed + (1.0 - SMOOTHING) * self.delay;
         self.points.push_back([arrived, self.smoothed]);
@@ -186,7 +186,7 @@ impl Trend {
             self.points.pop_front();
         }
         let Some(slope) = self.slope() else { return };
-        self.detect(slope * self.frames.min(MOST_FRAMES) * GAIN, passed);
+        self.detect(slope * self.frames.min(MAX_FRAMES) * GAIN, passed);
     }
 
     /// Returns the slope of the line through the points: by how much the delay grows in a unit of time.
@@ -218,7 +218,7 @@ impl Trend {
         let beyond = value.abs() - self.threshold;
         if beyond <= OUTLIER {
             let follow = if beyond < 0.0 { FOLLOW_DOWN } else { FOLLOW_UP };
-            self.threshold += follow * beyond * passed.min(LONGEST_STEP);
+            self.threshold += follow * beyond * passed.min(MAX_STEP);
             self.threshold = self.threshold.clamp(THRESHOLDS[0], THRESHOLDS[1]);
         }
     }
