@@ -107,14 +107,14 @@ pub(crate) fn load_gltf(path: &Path, animation: Option<&str>) -> Result<GltfScen
         materials.pop();
     }
     let (mut model, placed) =
-        assemble(path, meshes, materials).map_err(|error| match (error, compression(&document)) {
-            (SceneError::Empty { path }, Some(e)) => SceneError::unusable(
-                &path,
+        assemble(path, meshes, materials).map_err(|error| match compression(&document) {
+            Some(extension) => SceneError::unusable(
+                path,
                 format!(
-                    "its triangles are compressed by {e}, which is not supported: export the model without it"
+                    "its triangles are compressed by {extension}, which is not supported: export the model without it"
                 ),
             ),
-            (error, _) => error,
+            None => error,
         })?;
     model.textures = built.images;
     place_carried(&carried, placed, &mut motion, &mut model);
