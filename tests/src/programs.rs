@@ -12,8 +12,8 @@ use yoro::opengl::{
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
-use yoro_render::stereo::{self, ImBufferSize, Method, Paper, PaperOptions, StereoOptions};
-use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer};
+use yoro_render::stereo::{ImBufferSize, Method, Paper, PaperOptions, StereoOptions, StereoSession};
+use yoro_render::{DepthCopy, GpuScene, PreparedScene, RenderSettings, Renderer};
 use yoro_shaders::{Assembled, MissingFile};
 use yoro_test_support::record::Recorder;
 
@@ -93,12 +93,12 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
 }
 
 /// Builds the programs of a scene with every method that the driver supports.
-fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> anyhow::Result<()> {
-    let mut renderer = Renderer::new(gl, settings, scene)?;
+fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &Scene) -> anyhow::Result<()> {
+    let mut scene = PreparedScene::new(gl, scene.clone(), settings)?;
     for method in Method::ALL {
         if is_tested(method, settings, gl) {
             let options = StereoOptions { near_field: Some(1.0), ..StereoOptions::default() };
-            stereo::create(gl, method, settings, &options)?.prepare(&mut renderer, scene)?;
+            StereoSession::new(gl, method.into(), settings, &options)?.prepare(&mut scene)?;
         }
     }
     Ok(())
@@ -111,7 +111,6 @@ fn settings() -> RenderSettings {
 
 /// Builds the programs of a scene with all settings that affect a shader.
 fn renderer(gl: &Rc<Context>, scene: Scene, all_settings: bool) -> anyhow::Result<()> {
-    let scene = GpuScene::upload(gl, scene)?;
     let settings = settings();
     methods(gl, &settings, &scene)?;
     if all_settings {

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use yoro::eyes::{DepthRange, Eye, EyePair, FoveationLevel, Frustum, Gaze};
 use yoro_context::{Backend, Headless};
 use yoro_media::rgb_image;
-use yoro_render::stereo::{LevelFrame, Method, SelectedMethod, StereoFrame, StereoOptions};
+use yoro_render::stereo::{Method, StereoFrame, StereoOptions, StereoSession};
 use yoro_render::{PreparedScene, RenderSettings};
 
 use super::{Page, close};
@@ -150,13 +150,10 @@ pub fn headset_pictures(views: &[f32], size: [u32; 2], level: &str) -> [RgbImage
         dominant: Eye::Right,
     };
     let level = FoveationLevel::ALL.into_iter().find(|it| it.name() == level).unwrap();
-    let inset = level.foveation().map(|foveation| foveation.nearest);
-    let options = StereoOptions { policy: None, inset, ..StereoOptions::default() };
-    let mut method = SelectedMethod::new(gl, Method::Conventional.into(), &settings, &options).unwrap();
-    let levels =
-        pair.levels(level.foveation().as_ref(), Gaze::Axes(pair.axes()), options.guard_band).unwrap();
-    let (mut composed, frame) = (LevelFrame::new(gl, false).unwrap(), StereoFrame::new(gl, size).unwrap());
-    let parts = (&mut prepared.renderer, &prepared.scene);
-    composed.render(&mut method, parts, &levels, &frame.colors()).unwrap();
+    let options = StereoOptions { policy: None, ..StereoOptions::default() };
+    let mut session = StereoSession::new(gl, Method::Conventional.into(), &settings, &options).unwrap();
+    let views = pair.stereo_views(level.foveation().as_ref(), Gaze::Axes(pair.axes())).unwrap();
+    let mut frame = StereoFrame::new(gl, size).unwrap();
+    session.frame(&mut prepared, &views, frame.fit(size).unwrap(), None).unwrap();
     Eye::BOTH.map(|eye| rgb_image(&frame.eye(eye).read_rgba8(0, [0, 0], size), size))
 }

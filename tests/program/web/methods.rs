@@ -5,7 +5,7 @@ use yoro::eyes::{Eye, EyeOptions};
 use yoro_context::{Backend, Headless};
 use yoro_gl::Capabilities;
 use yoro_media::rgb_image;
-use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
+use yoro_render::stereo::{Method, StereoFrame, StereoOptions, StereoSession};
 use yoro_render::{PreparedScene, RenderSettings};
 
 use super::{Page, close};
@@ -34,8 +34,8 @@ fn every_method_shows_what_the_desktop_shows() {
         page.choose("msaa", &msaa.to_string());
         for method in Method::ALL.into_iter().filter(|method| *method != Method::Multiview) {
             let name = format!("{msaa} samples, {}", method.name());
-            let mut made = stereo::create(gl, method, &settings, &options).unwrap();
-            made.render(&mut prepared.renderer, &prepared.scene, &pair, &mut frame).unwrap();
+            let mut session = StereoSession::new(gl, method.into(), &settings, &options).unwrap();
+            session.frame(&mut prepared, &pair.into(), frame.fit(SIZE).unwrap(), None).unwrap();
             page.choose("method", method.name());
             assert_eq!(page.message(), None, "{name}");
             let eyes = page.eyes(SIZE);

@@ -6,7 +6,7 @@ use image::{Rgb, RgbImage};
 use yoro::eyes::{Eye, EyeOptions, Foveation, Gaze};
 use yoro_context::Headless;
 use yoro_gl::Context;
-use yoro_render::stereo::{LevelFrame, Method, Pipeline, SelectedMethod, StereoFrame, StereoOptions, stills};
+use yoro_render::stereo::{Method, Pipeline, StereoFrame, StereoOptions, StereoSession, stills};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_tests::{backends, golden};
 
@@ -64,14 +64,13 @@ fn a_foveated_eye_gives_its_golden_image() -> anyhow::Result<()> {
     let scene = yoro_scenes::build("prototype", yoro_scenes::DEFAULT_SEED)?;
     let eyes = EyeOptions { size: [SIZE; 2], fov_y: 90f32.to_radians(), ..EyeOptions::default() };
     let pair = eyes.pair(scene.viewpoints[0].pose());
-    let foveation = Foveation::MEDIUM;
-    let options = StereoOptions { inset: Some(foveation.nearest), policy: None, ..StereoOptions::default() };
+    let options = StereoOptions { policy: None, ..StereoOptions::default() };
     let settings = RenderSettings::default();
-    let PreparedScene { scene, mut renderer, .. } = PreparedScene::new(gl, scene, &settings)?;
-    let mut method = SelectedMethod::new(gl, Method::Synthesized.into(), &settings, &options)?;
-    let (mut levels, frame) = (LevelFrame::new(gl, false)?, StereoFrame::new(gl, pair.size)?);
-    let places = pair.levels(Some(&foveation), Gaze::Axes(pair.axes()), options.guard_band)?;
-    levels.render(&mut method, (&mut renderer, &scene), &places, &frame.colors())?;
+    let mut scene = PreparedScene::new(gl, scene, &settings)?;
+    let mut session = StereoSession::new(gl, Method::Synthesized.into(), &settings, &options)?;
+    let mut frame = StereoFrame::new(gl, pair.size)?;
+    let views = pair.stereo_views(Some(&Foveation::MEDIUM), Gaze::Axes(pair.axes()))?;
+    session.frame(&mut scene, &views, frame.fit(pair.size)?, None)?;
     check(&[("prototype-foveated".to_owned(), &image(&frame.rgba(Eye::Left)))]);
     Ok(())
 }

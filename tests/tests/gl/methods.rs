@@ -7,8 +7,8 @@ use glam::Quat;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_gl::Context;
-use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
-use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_render::stereo::{Method, StereoFrame, StereoOptions, StereoSession};
+use yoro_render::{GpuScene, PreparedScene, RenderSettings};
 use yoro_tests::{is_tested, on_every_backend, scene};
 
 const SIZE: [u32; 2] = [128, 96];
@@ -17,8 +17,7 @@ const IPD: f32 = 0.063;
 struct Stage {
     gl: Rc<Context>,
     settings: RenderSettings,
-    scene: GpuScene,
-    renderer: Renderer,
+    prepared: PreparedScene,
     frame: StereoFrame,
 }
 
@@ -31,22 +30,20 @@ impl Stage {
 
     fn of(gl: &Rc<Context>, scene: Scene, msaa: u32) -> anyhow::Result<Stage> {
         let settings = RenderSettings { msaa, shadow_map_size: 512, ..RenderSettings::default() };
-        let scene = GpuScene::upload(gl, scene)?;
-        let renderer = Renderer::new(gl, &settings, &scene)?;
-        Ok(Stage { gl: gl.clone(), settings, scene, renderer, frame: StereoFrame::new(gl, SIZE)? })
+        let prepared = PreparedScene::new(gl, scene, &settings)?;
+        Ok(Stage { gl: gl.clone(), settings, prepared, frame: StereoFrame::new(gl, SIZE)? })
     }
 
     fn render(&mut self, method: Method, options: &StereoOptions, pair: &EyePair) -> anyhow::Result<Eyes> {
-        let mut method = stereo::create(&self.gl, method, &self.settings, options)?;
-        method.prepare(&mut self.renderer, &self.scene)?;
-        method.render(&mut self.renderer, &self.scene, pair, &mut self.frame)?;
-        Ok(Eye::BOTH.map(|eye| self.frame.eye(eye).read_rgba8(0, [0, 0], pair.size)))
+        let mut session = StereoSession::new(&self.gl, method.into(), &self.settings, options)?;
+        session.frame(&mut self.prepared, &(*pair).into(), self.frame.fit(pair.size)?, None)?;
+        Ok(Eye::BOTH.map(|eye| self.frame.rgba(eye)))
     }
 
     fn pair(&self, dominant: Eye, convention: DepthConvention) -> EyePair {
         let depth = DepthRange { near: 0.1, far: 300.0, convention };
         let frustum = Frustum::symmetric(1.1, SIZE[0] as f32 / SIZE[1] as f32);
-        EyePair::parallel(self.scene.viewpoints[0].pose(), frustum, IPD, depth, SIZE, dominant)
+        EyePair::parallel(self.prepared.scene.viewpoints[0].pose(), frustum, IPD, depth, SIZE, dominant)
     }
 }
 
@@ -71,7 +68,7 @@ fn pairs(stage: &Stage) -> Vec<(&'static str, EyePair)> {
     }
     let odd = EyePair { size: [75, 51], ..plain };
     let mut pairs = vec![("plain", plain), ("asymmetric", asymmetric), ("canted", canted)];
-    if is_small(&stage.scene) {
+    if is_small(&stage.prepared.scene) {
         pairs.extend([("infinite", infinite), ("odd", odd)]);
     }
     pairs
@@ -120,7 +117,7 @@ fn single_pass_stereo_equals_two_renders() {
                     let both = stage.render(method, &options, &pair)?;
                     for eye in Eye::BOTH {
                         let share = within(1, &both[eye.index()], &expected[eye.index()]);
-                        let (scene, method) = (&stage.scene.name, method.name());
+                        let (scene, method) = (&stage.prepared.scene.name, method.name());
                         ensure!(share >= 0.999, "{scene}, {method}, {name}, {eye:?}: {share} equal");
                     }
                 }
@@ -136,7 +133,7 @@ fn a_missing_driver_feature_is_one_sentence() {
     on_every_backend(|gl| {
         for method in Method::ALL {
             let settings = RenderSettings::default();
-            let made = stereo::create(gl, method, &settings, &StereoOptions::default());
+            let made = StereoSession::new(gl, method.into(), &settings, &StereoOptions::default());
             let Err(reason) = settings.supports(method, gl.capabilities()) else {
                 made?;
                 continue;
@@ -200,7 +197,7 @@ fn hybrid_with_a_split_is_close_to_conventional() {
             let mut stage = Stage::of(gl, scene, samples)?;
             for (name, pair) in pairs(&stage).into_iter().filter(|(name, _)| *name != "canted") {
                 // The small scene's squares and floor lie on both sides of 3 metres, the room on both sides of 7.
-                let split = if is_small(&stage.scene) { 3.0 } else { 7.0 };
+                let split = if is_small(&stage.prepared.scene) { 3.0 } else { 7.0 };
                 let threshold = pair.focal_length_pixels() * IPD / split;
                 let options = StereoOptions { split_disparity: threshold, ..StereoOptions::default() };
                 let expected = stage.render(Method::Conventional, &options, &pair)?;
@@ -211,7 +208,7 @@ fn hybrid_with_a_split_is_close_to_conventional() {
                     mean_difference(&both[second], &expected[second]),
                     mean_difference(&mono[second], &expected[second]),
                 );
-                let label = format!("{}, {name}: {ours} against {doing_nothing}", stage.scene.name);
+                let label = format!("{}, {name}: {ours} against {doing_nothing}", stage.prepared.scene.name);
                 ensure!(ours < 0.7 * doing_nothing, "{label}");
                 ensure!(both != expected, "{label}: nothing was far");
             }
@@ -239,7 +236,7 @@ fn reprojected_shading_is_close_to_two_renders() {
                     mean_difference(&both[second], &expected[second]),
                     mean_difference(&mono[second], &expected[second]),
                 );
-                let label = format!("{}, {name}: {ours} against {doing_nothing}", stage.scene.name);
+                let label = format!("{}, {name}: {ours} against {doing_nothing}", stage.prepared.scene.name);
                 ensure!(ours < 0.4 * doing_nothing, "{label}");
             }
         }

@@ -6,8 +6,10 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, 
 use yoro_assets::ShadingStyle;
 use yoro_context::Headless;
 use yoro_gl::Context;
-use yoro_render::stereo::{self, ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions};
-use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_render::stereo::{
+    ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions, StereoSession,
+};
+use yoro_render::{PreparedScene, RenderSettings};
 use yoro_tests::{backends, is_tested, scene};
 
 /// Returns every way to render a frame, by name.
@@ -42,10 +44,10 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
 }
 
 /// Makes a scene with few pixels and few programs, since only the number of frames matters here.
-fn tiny(gl: &Rc<Context>) -> GpuScene {
+fn tiny(gl: &Rc<Context>, settings: &RenderSettings) -> PreparedScene {
     let mut scene = scene::every_material(ShadingStyle::Realistic);
     scene::keep_plain_and_full(&mut scene);
-    GpuScene::upload(gl, scene).unwrap()
+    PreparedScene::new(gl, scene, settings).unwrap()
 }
 
 /// Returns settings with one sample a pixel and with several.
@@ -66,15 +68,15 @@ fn thirty_frames_hold_as_many_objects_as_ten() {
     for backend in backends() {
         let headless = Headless::open(backend).unwrap();
         let gl = headless.gl();
-        let scene = tiny(gl);
         for settings in settings() {
-            let mut renderer = Renderer::new(gl, &settings, &scene).unwrap();
+            let mut scene = tiny(gl, &settings);
             for (name, method, options) in ways(gl, &settings) {
-                let mut method = stereo::create(gl, method, &settings, &options).unwrap();
+                let mut session = StereoSession::new(gl, method.into(), &settings, &options).unwrap();
                 let mut frame = StereoFrame::new(gl, [32, 32]).unwrap();
                 let mut after_ten = 0;
                 for i in 0..30 {
-                    method.render(&mut renderer, &scene, &pair(i, Eye::Right), &mut frame).unwrap();
+                    let views = pair(i, Eye::Right).into();
+                    session.frame(&mut scene, &views, frame.fit([32, 32]).unwrap(), None).unwrap();
                     if i == 9 {
                         after_ten = gl.object_count();
                     }
@@ -84,7 +86,6 @@ fn thirty_frames_hold_as_many_objects_as_ten() {
                 assert_eq!(gl.object_count(), after_ten, "{name}");
             }
         }
-        drop(scene);
         assert_eq!(gl.object_count(), 0, "{backend:?}");
     }
 }
@@ -93,11 +94,10 @@ fn thirty_frames_hold_as_many_objects_as_ten() {
 fn new_sizes_and_eyes_replace_objects() {
     let headless = Headless::open(backends()[0]).unwrap();
     let gl = headless.gl();
-    let scene = tiny(gl);
     for settings in settings() {
-        let mut renderer = Renderer::new(gl, &settings, &scene).unwrap();
+        let mut scene = tiny(gl, &settings);
         for (name, method, options) in ways(gl, &settings) {
-            let mut method = stereo::create(gl, method, &settings, &options).unwrap();
+            let mut session = StereoSession::new(gl, method.into(), &settings, &options).unwrap();
             let mut frame = StereoFrame::new(gl, [32, 32]).unwrap();
             let mut counts = Vec::new();
             for round in 0..3 {
@@ -107,7 +107,7 @@ fn new_sizes_and_eyes_replace_objects() {
                         let mut pair = EyePair { size, ..pair(round, dominant) };
                         pair.depth.convention = convention;
                         pair.frusta = [Frustum::symmetric(1.2, size[0] as f32 / size[1] as f32); 2];
-                        method.render(&mut renderer, &scene, &pair, &mut frame).unwrap();
+                        session.frame(&mut scene, &pair.into(), frame.fit(size).unwrap(), None).unwrap();
                     }
                 }
                 counts.push(gl.object_count());

@@ -24,9 +24,7 @@ use yoro_gl::Context;
 use yoro_media::rgb_image;
 use yoro_metrics::{Channels, Quality, error_map};
 use yoro_render::PreparedScene;
-use yoro_render::stereo::{
-    self, LevelFrame, Method, SelectedMethod, StereoFrame, StereoMethod as _, StereoOptions,
-};
+use yoro_render::stereo::{Method, StereoFrame, StereoSession};
 
 /// A picture made from the two eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -166,7 +164,7 @@ impl Subcommand for RenderArgs {
             (None, None) => vec![eyes::scene_pose(&scene, self.pose)?],
         };
         let foveation = self.foveated.foveation();
-        let options = StereoOptions { inset: foveation.map(|it| it.nearest), ..self.stereo.options() };
+        let options = self.stereo.options();
         if self.video.is_some() {
             video::check_size(&self.eyes, options.guard_band)?;
         }
@@ -182,13 +180,11 @@ impl Subcommand for RenderArgs {
             let encoding = (self.frame_rate, self.encoding);
             return video::render(gl, file, prepared, (&heads, self.time), (&self.eyes, &options), encoding);
         }
-        let PreparedScene { mut scene, mut renderer } = prepared;
-        let mut method = SelectedMethod::new(gl, self.method.into(), &settings, &options)?;
-        let mut levels = foveation.map(|_| LevelFrame::new(gl, false)).transpose()?;
+        let mut session = StereoSession::new(gl, self.method.into(), &settings, &options)?;
         let measured = self.measure || self.outputs.iter().any(|o| o.needs_truth());
         let mut truth =
-            measured.then(|| stereo::create(gl, Method::Conventional, &settings, &options)).transpose()?;
-        method.prepare(&mut renderer, &scene)?;
+            measured.then(|| StereoSession::new(gl, Method::Conventional.into(), &settings, &options)).transpose()?;
+        session.prepare(&mut prepared)?;
         let mut frame = StereoFrame::new(gl, self.eyes.size)?;
         let mut reports = Vec::new();
         let bar = progress_bar(heads.len() as u64);
@@ -196,15 +192,9 @@ impl Subcommand for RenderArgs {
             interrupt::check()?;
             let pair = self.eyes.pair(head);
             let start = Instant::now();
-            renderer.set_time(&mut scene, self.time + i as f64 / f64::from(self.frame_rate))?;
-            match &mut levels {
-                Some(own) => {
-                    let gaze = Gaze::Axes(pair.axes());
-                    let levels = pair.levels(foveation.as_ref(), gaze, options.guard_band)?;
-                    own.render(&mut method, (&mut renderer, &scene), &levels, &frame.colors())?;
-                }
-                None => method.render(&mut renderer, &scene, &pair, &mut frame)?,
-            }
+            prepared.set_time(self.time + i as f64 / f64::from(self.frame_rate))?;
+            let views = pair.stereo_views(foveation.as_ref(), Gaze::Axes(pair.axes()))?;
+            session.frame(&mut prepared, &views, frame.fit(pair.size)?, None)?;
             gl.finish();
             let milliseconds = start.elapsed().as_secs_f64() * 1e3;
             let eyes = Eye::BOTH.map(|eye| rgb_image(&frame.rgba(eye), frame.size()));
@@ -212,7 +202,7 @@ impl Subcommand for RenderArgs {
             let mut quality = None;
             let mut truth_image = None;
             if let Some(truth) = &mut truth {
-                truth.render(&mut renderer, &scene, &pair, &mut frame)?;
+                truth.frame(&mut prepared, &pair.into(), frame.fit(pair.size)?, None)?;
                 let real = rgb_image(&frame.rgba(second), frame.size());
                 quality = Some([
                     Quality::of(&eyes[second.index()], &real, Channels::Rgb)?,
@@ -220,7 +210,7 @@ impl Subcommand for RenderArgs {
                 ]);
                 truth_image = Some(real);
             }
-            let stem = frame_stem(&scene.name, i, heads.len());
+            let stem = frame_stem(&prepared.scene.name, i, heads.len());
             let mut pictures = Vec::new();
             for &output in &self.outputs {
                 let path = eyes::picture_path(&self.out, &stem, output.name());

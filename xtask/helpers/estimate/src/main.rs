@@ -27,7 +27,7 @@ use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, EyePair, FoveationLeve
 use yoro_assets::ShadingStyle;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Capabilities, Context};
-use yoro_render::stereo::{LevelFrame, Method, SelectedMethod, StereoMethod as _, StereoOptions};
+use yoro_render::stereo::{FrameTargets, Method, StereoImages, StereoOptions, StereoSession};
 use yoro_render::{DepthReader, PreparedScene, RenderSettings, Selection, ViewTargets};
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
 use yoro_test_support::record::{Command, Recorder};
@@ -164,18 +164,13 @@ impl Estimator {
 
     /// Returns the commands of a method's first frame.
     fn record(&mut self, method: Method, pair: &EyePair, level: FoveationLevel) -> anyhow::Result<Vec<Command>> {
-        let inset = level.foveation().map(|foveation| foveation.nearest);
-        let options = StereoOptions { policy: None, inset, ..StereoOptions::default() };
-        let mut selected = SelectedMethod::new(&self.gl, method.into(), &self.settings, &options)?;
-        let axes = Gaze::Axes(pair.axes());
-        let levels = pair.levels(level.foveation().as_ref(), axes, options.guard_band)?;
-        let mut frame = LevelFrame::new(&self.gl, false)?;
-        let to = frame.fit(&levels)?;
-        let PreparedScene { renderer, scene } = &mut self.scene;
-        selected.prepare(renderer, scene)?;
+        let options = StereoOptions { policy: None, ..StereoOptions::default() };
+        let mut session = StereoSession::new(&self.gl, method.into(), &self.settings, &options)?;
+        let views = pair.stereo_views(level.foveation().as_ref(), Gaze::Axes(pair.axes()))?;
+        let mut images = StereoImages::new(&self.gl)?;
+        session.prepare(&mut self.scene)?;
         self.recorder.start();
-        let eyes = if levels.inset.is_some() { (&levels).into() } else { pair.into() };
-        selected.render_levels(renderer, scene, &eyes, &to)?;
+        session.frame(&mut self.scene, &views, FrameTargets::Images(&mut images), None)?;
         Ok(self.recorder.take())
     }
 
@@ -184,12 +179,13 @@ impl Estimator {
         let level = FoveationLevel::Medium.foveation();
         let guard = StereoOptions::default().guard_band;
         let pair = reversed(pair);
-        let levels = pair.levels(level.as_ref(), Gaze::Axes(pair.axes()), guard)?;
+        let views = pair.stereo_views(level.as_ref(), Gaze::Axes(pair.axes()))?;
         let pixels = |size: [u32; 2]| f64::from(size[0]) * f64::from(size[1]);
         let mut counted = Vec::new();
-        for level in [Some(levels.wide), levels.inset].into_iter().flatten() {
-            let share = pixels(level.views.target.size) / pixels(pair.size);
-            counted.push((self.counter.count(&mut self.scene, level.views)?, share));
+        for layer in views.layers() {
+            let views = layer.synthesis_views(guard)?;
+            let share = pixels(views.target.size) / pixels(pair.size);
+            counted.push((self.counter.count(&mut self.scene, views)?, share));
         }
         Ok(counted)
     }

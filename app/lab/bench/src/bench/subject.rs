@@ -4,22 +4,19 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use super::process;
-use yoro::eyes::{EyePair, EyesError, FoveationLevel, Gaze, Levels};
+use yoro::eyes::{EyePair, EyesError, FoveationLevel, Gaze, StereoViews};
 use yoro_gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
-    EyeLevels, EyeTarget, FramesBetween, LevelFrame, LevelTargets, Method, MethodChoice, SelectedMethod,
-    StereoError, StereoFrame, StereoMethod, StereoOptions,
+    EyeTarget, FrameReport, FrameTargets, Method, StereoError, StereoFrame, StereoOptions, StereoSession,
 };
 use yoro_render::{PreparedScene, RenderSettings};
 
 /// A stereo method with its programs and targets, ready to be measured.
 pub struct Subject {
     gl: Rc<Context>,
-    method: SelectedMethod,
+    session: StereoSession,
     options: StereoOptions,
-    level: FoveationLevel,
-    /// What eyes of two levels are composed of; `None` without an inset.
-    levels: Option<LevelFrame>,
+    foveation: FoveationLevel,
 }
 
 /// The time that one frame took.
@@ -44,10 +41,9 @@ impl Subject {
     ) -> Result<Subject, GlError> {
         Ok(Subject {
             gl: gl.clone(),
-            method: SelectedMethod::new(gl, MethodChoice::Named(method), settings, options)?,
+            session: StereoSession::new(gl, method.into(), settings, options)?,
             options: *options,
-            level: FoveationLevel::Off,
-            levels: None,
+            foveation: FoveationLevel::Off,
         })
     }
 
@@ -59,12 +55,10 @@ impl Subject {
         gl: &Rc<Context>,
         method: Method,
         settings: &RenderSettings,
-        level: FoveationLevel,
+        foveation: FoveationLevel,
     ) -> Result<Subject, GlError> {
-        let inset = level.foveation().map(|foveation| foveation.nearest);
-        let options = StereoOptions { policy: None, inset, ..StereoOptions::default() };
-        let levels = inset.map(|_| LevelFrame::new(gl, false)).transpose()?;
-        Ok(Subject { level, levels, ..Subject::new(gl, method, settings, &options)? })
+        let options = StereoOptions { policy: None, ..StereoOptions::default() };
+        Ok(Subject { foveation, ..Subject::new(gl, method, settings, &options)? })
     }
 
     /// Compiles the same as [`Subject::foveated`] for a runtime that makes frames of motion vectors.
@@ -75,14 +69,13 @@ impl Subject {
         gl: &Rc<Context>,
         method: Method,
         settings: &RenderSettings,
-        level: FoveationLevel,
+        foveation: FoveationLevel,
     ) -> Result<Subject, GlError> {
-        let made = Subject::foveated(gl, method, settings, level)?;
-        let options = StereoOptions { frames_between: FramesBetween::Runtime, ..made.options };
-        Ok(Subject { levels: made.levels, level, ..Subject::new(gl, method, settings, &options)? })
+        let options = StereoOptions { policy: None, motion_vectors: true, ..StereoOptions::default() };
+        Ok(Subject { foveation, ..Subject::new(gl, method, settings, &options)? })
     }
 
-    /// Renders both eyes into targets of the eyes' size. Motion vectors are those of the wide level.
+    /// Renders both eyes into targets of the eyes' size. Motion vectors are those of the wide layer.
     ///
     /// # Errors
     /// [`StereoError`] for eyes that the method cannot render, or if GL refuses.
@@ -91,19 +84,9 @@ impl Subject {
         scene: &mut PreparedScene,
         pair: &EyePair,
         to: &[EyeTarget; 2],
-    ) -> Result<(), StereoError> {
-        let PreparedScene { renderer, scene } = scene;
-        let Some(frame) = &mut self.levels else {
-            return self.method.render_levels(renderer, scene, &pair.into(), &to.into());
-        };
-        let levels = levels(pair, self.level, &self.options)?;
-        let mut targets: LevelTargets = frame.fit(&levels)?;
-        for (own, to) in targets.wide.iter_mut().zip(to) {
-            own.motion = to.motion;
-        }
-        self.method.render_levels(renderer, scene, &EyeLevels::from(&levels), &targets)?;
-        frame.compose(&to.map(|eye| eye.color));
-        Ok(())
+    ) -> Result<FrameReport, StereoError> {
+        let views = self.views(pair)?;
+        self.session.frame(scene, &views, FrameTargets::Eyes(*to), None)
     }
 
     /// Renders a frame and waits for it.
@@ -170,21 +153,16 @@ impl Subject {
         Ok(times)
     }
 
-    /// True if the last frame's motion targets were filled.
-    pub fn has_motion(&self) -> bool {
-        self.method.report().has_motion
-    }
-
-    /// Returns the levels in which a frame is rendered.
+    /// Returns what is rendered of a pair of eyes.
     ///
     /// # Errors
-    /// [`EyesError`] for eyes that cannot be synthesized.
-    pub fn levels(&self, pair: &EyePair) -> Result<Levels, EyesError> {
-        levels(pair, self.level, &self.options)
+    /// [`EyesError`] for eyes that cannot be rendered.
+    pub fn views(&self, pair: &EyePair) -> Result<StereoViews, EyesError> {
+        pair.stereo_views(self.foveation.foveation().as_ref(), Gaze::Axes(pair.axes()))
     }
-}
 
-/// Returns a pair's levels with the inset on the axes of the eyes.
-fn levels(pair: &EyePair, level: FoveationLevel, options: &StereoOptions) -> Result<Levels, EyesError> {
-    pair.levels(level.foveation().as_ref(), Gaze::Axes(pair.axes()), options.guard_band)
+    /// Returns the options of the methods.
+    pub fn options(&self) -> &StereoOptions {
+        &self.options
+    }
 }

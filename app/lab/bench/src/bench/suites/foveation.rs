@@ -18,7 +18,7 @@ use super::super::runner::{Round, Runner, eye_image, milliseconds};
 use super::super::scenes::LazyObject;
 use super::super::subject::Subject;
 use super::super::views;
-use yoro::eyes::{Composition, EyePair, EyesError, Foveation, FoveationLevel, Levels};
+use yoro::eyes::{Composition, EyePair, EyesError, Foveation, FoveationLevel};
 use yoro_files::interrupt;
 use yoro_gl::{Context, GlError};
 use yoro_metrics::{FlickerMeter, SsimWindow, psnr_where, ssim_where};
@@ -214,11 +214,15 @@ impl Foveator {
     /// Returns the pixels that are rendered, of those of two full eyes.
     fn shaded(&self, pair: &EyePair) -> Result<f64, EyesError> {
         let pixels = |size: [u32; 2]| f64::from(size[0]) * f64::from(size[1]);
-        let Levels { wide, inset, .. } = self.subject.levels(pair)?;
-        let each = [Some(wide), inset].into_iter().flatten().map(|level| {
-            if self.is_synthesis { pixels(level.views.source.size) } else { 2.0 * pixels(level.eyes.size) }
-        });
-        Ok(each.sum::<f64>() / (2.0 * pixels(pair.size)))
+        let mut shaded = 0.0;
+        for layer in self.subject.views(pair)?.layers() {
+            shaded += if self.is_synthesis {
+                pixels(layer.synthesis_views(self.subject.options().guard_band)?.source.size)
+            } else {
+                2.0 * pixels(layer.eyes.size)
+            };
+        }
+        Ok(shaded / (2.0 * pixels(pair.size)))
     }
 }
 
@@ -247,14 +251,14 @@ fn compare(
     }
     let (truth, same) = (&images[0][0], &rendered[0][0]);
     let fovea = fovea(pair);
-    let medium = contenders[FoveationLevel::Medium as usize].subject.levels(pair)?;
+    let medium = contenders[FoveationLevel::Medium as usize].subject.views(pair)?;
     let silhouettes_of = |periphery: &[bool]| -> Vec<bool> {
         periphery.iter().zip(near_silhouettes).map(|(a, b)| *a && *b).collect()
     };
     for (at, contender) in contenders.iter().enumerate() {
         let measurement = round.of(&contender.name);
         measurement.push(metric::SHADED, contender.shaded(pair)?);
-        let own = contender.subject.levels(pair)?;
+        let own = contender.subject.views(pair)?;
         // All pixels everywhere have no periphery: that of the middle level is compared.
         let levels = if own.inset.is_some() { own } else { medium };
         let periphery = periphery(&levels.composition(other));
@@ -371,7 +375,7 @@ fn near_steps(distances: &[f32], [width, height]: [usize; 2]) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use yoro::eyes::{EyeOptions, Gaze, GuardBand, Pose};
+    use yoro::eyes::{EyeOptions, Gaze, Pose};
 
     fn pair() -> EyePair {
         EyeOptions { size: [90; 2], fov_y: 90f32.to_radians(), ..EyeOptions::default() }.pair(Pose::IDENTITY)
@@ -381,7 +385,7 @@ mod tests {
     fn fovea_and_periphery_do_not_meet() {
         let pair = pair();
         let level = FoveationLevel::Medium.foveation().unwrap();
-        let levels = pair.levels(Some(&level), Gaze::Axes(pair.axes()), GuardBand::Distance(1.0)).unwrap();
+        let levels = pair.stereo_views(Some(&level), Gaze::Axes(pair.axes())).unwrap();
         let (fovea, periphery) = (fovea(&pair), periphery(&levels.composition(pair.dominant.other())));
         assert!(fovea.iter().zip(&periphery).all(|(a, b)| !(*a && *b)));
         let count = |mask: &[bool]| mask.iter().filter(|is| **is).count();

@@ -245,8 +245,8 @@ impl Contenders {
         let to = self.targets(&previous.pair);
         let mut submit = |this: &mut Contenders, name: &str| {
             let subject = if name == TWO_EYES { &mut this.conventional } else { &mut this.synthesized };
-            subject.render_to(scene, &now.pair, &to)?;
-            ensure!(subject.has_motion(), "{name} has no motion vectors");
+            let report = subject.render_to(scene, &now.pair, &to)?;
+            ensure!(report.has_motion, "{name} has no motion vectors");
             Ok(this.read(eye, convention)?)
         };
         let (two, one) = (submit(self, TWO_EYES)?, submit(self, ONE_EYE)?);
