@@ -5,10 +5,7 @@ use std::path::PathBuf;
 use anyhow::bail;
 
 use crate::cargo;
-use crate::folders::{copy, root, target_folder};
-
-/// The passes for three.js in its package.
-const THREE: &str = "app/engines/three/src/shaders.js";
+use crate::folders::target_folder;
 
 /// Writes the kit to `target/kit`, and returns the folder.
 ///
@@ -22,13 +19,4 @@ pub fn kit() -> anyhow::Result<PathBuf> {
     }
     println!("{path}");
     Ok(folder)
-}
-
-/// Renews the shaders of the package for three.js, and returns a text on what to check next.
-///
-/// # Errors
-/// Those of [`kit`]; fails if the file cannot be written.
-pub fn three() -> anyhow::Result<String> {
-    copy(&kit()?.join("three/shaders.js"), &root().join(THREE))?;
-    Ok(format!("written: look at `git diff {THREE}`\n"))
 }

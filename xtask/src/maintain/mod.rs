@@ -1,17 +1,20 @@
 //! `cargo xtask maintain`: the commands that only maintainers run, and the programs that tests use.
 
-mod compile;
 pub(crate) mod godot;
 pub(crate) mod hello_xr;
 pub mod monado;
+mod renew;
 pub mod shader_cost;
 
 use clap::Subcommand;
 
-use crate::{console, kit};
+use crate::console;
 
 #[derive(Subcommand)]
 pub(crate) enum Task {
+    /// Renew everything that is generated: shaders for Vulkan, wgpu and three.js, the C library's header, the table of
+    /// settings, and the costs of shaders
+    Renew,
     /// Print the cost of the shader programs on mobile GPUs, by Mesa's compilers: instructions, registers, waves,
     /// fetches, spills
     ShaderCost {
@@ -24,12 +27,6 @@ pub(crate) enum Task {
         #[arg(long)]
         bless: bool,
     },
-    /// Compile the synthesis shaders for Vulkan: app/engines/core/src/vulkan/spirv
-    Spirv,
-    /// Compile the synthesis shaders for wgpu: app/engines/wgpu/src/wgsl
-    Wgsl,
-    /// Write the synthesis shaders for three.js: app/engines/three/src/shaders.js
-    Three,
     /// Set up Monado, an OpenXR runtime with a simulated headset, below target/, and print how to use it
     Monado,
     /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
@@ -41,14 +38,12 @@ pub(crate) enum Task {
 /// Runs a task. Returns false if a shader has a fault.
 pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
     let (text, passed) = match task {
+        Task::Renew => renew::renew()?,
         Task::ShaderCost { filter, gpus, bless } => {
             let compilers = shader_cost::Compilers::make()?;
             let options = shader_cost::Options { filter, gpus, bless };
             shader_cost::report(&options, &compilers, shader_cost::programs()?)?
         }
-        Task::Spirv => (compile::spirv()?, true),
-        Task::Wgsl => (compile::wgsl()?, true),
-        Task::Three => (kit::three()?, true),
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
         Task::Godot => (godot::usage()?, true),

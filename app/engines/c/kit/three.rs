@@ -27,7 +27,7 @@ type Macros = BTreeMap<String, (Option<String>, String)>;
 /// Returns the text of the module.
 pub fn module() -> io::Result<String> {
     let mut module = format!(
-        "// yoro {}, synthesis passes, written from its GLSL by `cargo xtask maintain three`. Do not edit.\n\
+        "// yoro {}, synthesis passes, written from its GLSL by `cargo xtask maintain renew`. Do not edit.\n\
          // SPDX-License-Identifier: MIT OR Apache-2.0\n\
          export const precisions = '{PRECISIONS}';\n",
         env!("CARGO_PKG_VERSION")
