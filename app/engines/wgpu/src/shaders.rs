@@ -1,4 +1,8 @@
-//! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo xtask maintain shaders`.
+<<<<<<< HEAD
+//! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo xtask maintain renew`.
+=======
+//! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo xtask maintain renew`.
+>>>>>>> h/xtask
 
 use yoro::synthesis::backend::{PerKind, WarpKind};
 

@@ -1,4 +1,8 @@
-// Made of yoro's GLSL by `cargo xtask maintain shaders`.
+<<<<<<< HEAD
+// Made of yoro's GLSL by `cargo xtask maintain renew`.
+=======
+// Made of yoro's GLSL by `cargo xtask maintain renew`.
+>>>>>>> h/xtask
 struct Segment {
     steep: bool,
     sense: f32,

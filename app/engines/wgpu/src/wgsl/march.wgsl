@@ -1,9 +1,13 @@
-// Made of yoro's GLSL by `cargo xtask maintain shaders`.
+<<<<<<< HEAD
+// Made of yoro's GLSL by `cargo xtask maintain renew`.
 struct Edge {
     x: f32,
     depth: f32,
 }
 
+=======
+// Made of yoro's GLSL by `cargo xtask maintain renew`.
+>>>>>>> h/xtask
 struct Search {
     x: f32,
     depths: vec2<f32>,
