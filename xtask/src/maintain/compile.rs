@@ -1,39 +1,27 @@
-//! The synthesis shaders as SPIR-V and WGSL. They are committed, so that building the libraries requires no compiler.
+//! The synthesis shaders as SPIR-V, WGSL and three.js's text. They are committed, so that building the libraries requires
+//! no compiler.
 
 use anyhow::bail;
 
 use crate::cargo;
 
-/// Compiles all modules for Vulkan, and returns a text on what to check next.
+/// The packages whose tests know what is made of the shaders.
+const PACKAGES: [&str; 3] = ["yoro", "yoro-wgpu", "yoro-three-tests"];
+/// What they renew.
+const MADE: &str =
+    "app/engines/core/src/vulkan/spirv app/engines/wgpu/src/wgsl app/engines/three/src/shaders.js";
+
+/// Renews all that is made of the shaders, by the tests that detect outdated files. Returns a text on what to check next.
 ///
 /// # Errors
 /// Fails if glslang is missing, or if a shader does not compile.
-pub fn spirv() -> anyhow::Result<String> {
-    compile("yoro", "vulkan::shaders", "YORO_BLESS_SPIRV", "app/engines/core/src/vulkan/spirv")
-}
-
-/// Compiles all modules for wgpu, and returns a text on what to check next.
-///
-/// # Errors
-/// Fails if glslang is missing, or if a shader does not compile.
-pub fn wgsl() -> anyhow::Result<String> {
-    compile("yoro-wgpu", "shaders", "YORO_BLESS_WGSL", "app/engines/wgpu/src/wgsl")
-}
-
-/// Preprocesses all passes for three.js, and returns a text on what to check next.
-///
-/// # Errors
-/// Fails if glslang is missing.
-pub fn three() -> anyhow::Result<String> {
-    compile("yoro-three-tests", "shaders", "YORO_BLESS_THREE", "app/engines/three/src/shaders.js")
-}
-
-/// Runs the test that detects outdated modules. It knows their sources, and renews them if `bless` is set.
-fn compile(package: &str, test: &str, bless: &str, folder: &str) -> anyhow::Result<String> {
+pub fn shaders() -> anyhow::Result<String> {
     cargo::succeeds(&["xtask", "setup"], &[]);
-    let test = ["test", "--quiet", "--package", package, "--lib", test];
-    if !cargo::succeeds(&test, &[(bless, "1")]) {
+    let packages = PACKAGES.iter().flat_map(|package| ["--package", package]);
+    let test: Vec<&str> =
+        ["test", "--quiet", "--lib"].into_iter().chain(packages).chain(["shaders"]).collect();
+    if !cargo::succeeds(&test, &[("YORO_BLESS_SHADERS", "1")]) {
         bail!("the shaders cannot be compiled: see above");
     }
-    Ok(format!("compiled: look at `git diff --stat {folder}`\n"))
+    Ok(format!("compiled: look at `git diff --stat {MADE}`\n"))
 }

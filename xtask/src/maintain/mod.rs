@@ -29,12 +29,8 @@ pub(crate) enum Task {
         #[arg(last = true, conflicts_with = "shaders")]
         frames: Vec<String>,
     },
-    /// Compile the synthesis shaders for Vulkan: app/engines/core/src/vulkan/spirv
-    Spirv,
-    /// Compile the synthesis shaders for wgpu: app/engines/wgpu/src/wgsl
-    Wgsl,
-    /// Write the synthesis shaders for three.js: app/engines/three/src/shaders.js
-    Three,
+    /// Renew all that is made of the synthesis shaders: SPIR-V for Vulkan, WGSL for wgpu, the texts of three.js
+    Shaders,
     /// Set up Monado, an OpenXR runtime with a simulated headset, below target/, and print how to use it
     Monado,
     /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
@@ -52,9 +48,7 @@ pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
             estimate::report(&estimate::Options { filter, gpus, bless }, &compilers, estimate::programs()?)?
         }
         Task::Estimate { frames, .. } => (estimate::frames(&frames)?, true),
-        Task::Spirv => (compile::spirv()?, true),
-        Task::Wgsl => (compile::wgsl()?, true),
-        Task::Three => (compile::three()?, true),
+        Task::Shaders => (compile::shaders()?, true),
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
         Task::Godot => (godot::usage()?, true),

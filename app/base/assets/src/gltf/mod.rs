@@ -229,14 +229,14 @@ fn paint_meshes(
     }
     built.images.push(palette());
     for (mesh, colors) in meshes.iter_mut().zip(colors).filter(|(mesh, _)| painted[mesh.material]) {
-        let former = paint(&mut mesh.vertices, &mut mesh.indices, |corners| match colors {
+        let previous = paint(&mut mesh.vertices, &mut mesh.indices, |corners| match colors {
             Some(colors) => {
                 let mean = corners.into_iter().map(|i| colors[i as usize]).sum::<Vec3>() / 3.0;
                 Vec3::from(mean.to_array().map(to_srgb))
             }
             None => Vec3::ONE,
         });
-        mesh.split(&former);
+        mesh.split(&previous);
     }
 }
 
@@ -295,11 +295,8 @@ impl Reader<'_> {
                     let count = raw.indices.len().max(raw.vertices.len()).saturating_mul(instances.len());
                     corners = count.saturating_add(corners);
                     if corners > MAX_ELEMENTS {
-                        return Err(SceneError::TooLarge {
-                            path: self.path.into(),
-                            limit: MAX_ELEMENTS,
-                            what: "corners of triangles",
-                        });
+                        let what = "corners of triangles";
+                        return Err(SceneError::too_large(self.path, MAX_ELEMENTS, what));
                     }
                     (raw.name, raw.material) = (name.into(), material);
                     place(&mut raw, wanted.placement);
