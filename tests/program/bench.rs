@@ -104,7 +104,7 @@ fn the_files_of_all_shards_are_one_run() {
     succeed(at, &format!("report {} {} --out parts", parts[0], parts[1]));
     succeed(at, "report whole.jsonl --out whole");
     let tables = |folder: &str| -> Vec<String> {
-        let text = fs::read_to_string(at.join(folder).join("summary.md")).unwrap();
+        let text = fs::read_to_string(at.join(folder).join("report.md")).unwrap();
         text.lines().filter(|line| line.starts_with('|')).map(String::from).collect()
     };
     assert!(tables("parts").len() > 3);
@@ -157,109 +157,30 @@ fn sweeps_have_their_points_and_baselines() {
     assert_eq!(a, b);
 }
 
-/// The devices in the estimate keep their own sizes, which takes most of the test's time.
+/// Every experiment that no other test runs goes through its measurements and has its section.
 #[test]
-fn estimates_are_measured_and_reported() {
+fn the_other_experiments_are_measured_and_reported() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    let line = "bench shader-cost --quick --scene prototype --size 384x384 --viewpoints 1 --out cost.jsonl";
+    let line = "bench reprojection half-rate foveation --quick --scene talk --size 64x64 --rounds 1 --out r.jsonl";
     succeed(at, line);
-    let records = records(&at.join("cost.jsonl"));
-    assert!(of_kind(&records, "unsupported").is_empty());
-    let of = |contender: &str, metric: &str| values(&records, contender, metric);
-    let measured = of_kind(&records, "measurement");
-    let who = |suite: &str| -> Vec<&str> {
-        let rows = measured.iter().filter(|m| m["suite"] == suite && m["scene"] == "prototype");
-        rows.map(|m| m["contender"].as_str().unwrap()).collect()
-    };
-
-    let devices = ["quest-2", "quest-3", "mali-g57"];
-    assert_eq!(who("shader-cost"), devices);
-    for device in devices {
-        let one = |metric: &str| match of(device, metric)[..] {
-            [value] => value,
-            ref values => panic!("{device}, {metric}: {values:?} of one viewpoint"),
-        };
-        let slots = ["slots_tiles", "slots_spans", "slots_march"].map(one);
-        assert!(slots.iter().all(|n| *n > 1.0) && slots[2] > slots[0] + slots[1], "{device}: {slots:?}");
-        let sum = slots.iter().sum::<f64>();
-        assert!((sum - one("slots")).abs() < 1e-6 * sum && sum < 1000.0, "{device}: {slots:?}");
-        // For each pixel, the march reads at least its tile's span and the colour.
-        assert!(one("fetches") > 2.0 && one("fetches") < one("slots"), "{device}");
-        // A wave takes as long as the slowest of its pixels. It uses the law only if all of its pixels do.
-        for [pixel, wave] in
-            [["trips_pixel", "trips_wave"], ["goes_on_pixel", "goes_on_wave"], ["law_wave", "law_pixel"]]
-        {
-            let [pixel, wave] = [one(pixel), one(wave)];
-            // The two means are over different numbers of values, so they are rounded differently.
-            assert!(pixel > 0.0 && pixel <= wave * (1.0 + 1e-12), "{device}: {pixel} and {wave}");
-        }
-        assert!(one("goes_on_wave") < 1.0, "{device}");
-        for metric in ["alu_ms", "fetch_ms", "memory_ms"] {
-            assert!(one(metric) > 0.01 && one(metric) < 100.0, "{device}: {metric} {}", one(metric));
-        }
-    }
-
-    succeed(at, "report cost.jsonl --out out");
-    let results = fs::read_to_string(at.join("out/results.md")).unwrap();
-    let (_, section) = results.split_once("## Shader cost").expect("a section of the suite");
-    for row in devices {
-        assert!(section.contains(&format!(" | {row} | ")), "{row}: {section}");
-    }
-    let page = fs::read_to_string(at.join("out/report.html")).unwrap();
-    for needed in ["shader-cost", "mali-g57"] {
-        assert!(page.contains(needed), "{needed}");
-    }
-}
-
-#[test]
-fn whole_frames_are_counted_for_every_method_and_gpu() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
-    let line =
-        "bench shader-cost --frame --quick --scene prototype --size 128x128 --viewpoints 1 --out f.jsonl";
-    let refused = run(at, &format!("{line} --gl egl"));
-    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
-    assert!(refused.stderr.contains("--gl osmesa"), "{}", refused.stderr);
-    if std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_some() {
-        return;
-    }
-    let text = succeed(at, line).stdout;
-    assert!(text.contains("Executed slots over two renders") && text.contains("`auto` chooses"), "{text}");
-    let records = records(&at.join("f.jsonl"));
-    for label in ["bloom", "no bloom"] {
+    let records = records(&at.join("r.jsonl"));
+    let who = |label: &str| -> Vec<&str> {
         let measured = of_kind(&records, "measurement").into_iter().filter(|m| m["label"] == label);
-        let measured: Vec<&Value> = measured.collect();
-        let sum = |contender: &str, prefix: &str| -> f64 {
-            let own = measured.iter().find(|m| m["contender"] == contender).expect(contender);
-            let values = own["values"].as_object().unwrap().iter();
-            values
-                .filter(|(name, _)| name.starts_with(prefix) && !name.contains("/vertices"))
-                .map(|(_, v)| v[0].as_f64().unwrap())
-                .sum()
-        };
-        for gpu in ["a650", "a740", "a750", "g52", "g57", "g610"] {
-            let [two, both, ours] = ["conventional", "multiview", "yoro-gather"]
-                .map(|contender| sum(contender, &format!("slots/{gpu}/")));
-            // Without vertices, of which such small pictures have many per pixel, drawing both eyes at once costs the
-            // same as two renders.
-            assert!((0.9..1.1).contains(&(both / two)), "{gpu}: {both} of {two}");
-            assert!(ours > 0.5 * two, "{gpu}: {ours} of {two}");
-            // With levels, a fifth to two fifths of the pixels are rendered: less than as a whole, but not for nothing.
-            let levels = ["conventional-medium", "yoro-medium"]
-                .map(|contender| sum(contender, &format!("slots/{gpu}/")));
-            assert!(levels[0] < two && levels[1] < ours && levels[1] < levels[0], "{gpu}: {levels:?}");
-            assert!(levels[1] > 0.1 * two, "{gpu}: {levels:?} of {two}");
-        }
-        // Each pixel of both eyes shows either a surface or the sky.
-        assert!(sum("conventional", "fragments/surfaces") >= 2.0);
-        let [small, tiles, blits] =
-            ["bytes-16/", "bytes/", "bytes-blit/"].map(|prefix| sum("yoro-gather", prefix));
-        assert!(8.0 < small && small < tiles && tiles < blits, "{small} {tiles} {blits}");
-        // Two renders carry no depth.
-        assert_eq!(sum("conventional", "bytes-16/"), sum("conventional", "bytes/"));
-        let depth = sum("yoro-gather", "fragments/carry");
-        assert!(depth > 1.0, "depth is carried: {depth}");
+        measured.map(|m| m["contender"].as_str().unwrap()).collect()
+    };
+    assert_eq!(who("canted eyes"), ["same-image", "gather-parallel-eyes", "any-view"]);
+    assert_eq!(who("walk, 4 late"), ["same-image", "rotation", "any-view"]);
+    for label in ["still", "walk, foveation medium, 90 degrees"] {
+        let runtime = ["runtime-two-eyes", "runtime-one-eye", "runtime-made-vectors", "rotation"];
+        let rest = ["yoro-full-rate", "same-image", "conventional"];
+        assert_eq!(who(label), [&runtime[..], &rest].concat(), "{label}");
+    }
+    assert_eq!(who("60 degrees").len(), 9);
+    succeed(at, "report r.jsonl --out out");
+    let results = fs::read_to_string(at.join("out/report.md")).unwrap();
+    for heading in ["## Reprojection", "## Half rate", "## Foveation"] {
+        assert!(results.contains(heading), "{heading}: {results}");
     }
 }
 

@@ -32,7 +32,7 @@ fn the_page_is_shown_in_a_browser() {
     }
     let stdout = succeed(at, "report run.jsonl --out out").stdout;
     assert!(stdout.contains("out/report.html"), "{stdout}");
-    let results = fs::read_to_string(at.join("out/results.md")).unwrap();
+    let results = fs::read_to_string(at.join("out/report.md")).unwrap();
     for needed in ["| 0.60 |", "32.50 / 0.9700", "20.00 / 0.5000", "29.79 / 0.9697", "no GL_OVR_multiview2"] {
         assert!(results.contains(needed), "{needed}: {results}");
     }
@@ -47,7 +47,7 @@ fn measurements_of_bench_are_reported() {
     let at = dir.path();
     succeed(at, "bench stream --quick --scene prototype --size 64x64 --out b.jsonl");
     succeed(at, "report b.jsonl");
-    let results = fs::read_to_string(at.join("out/results.md")).unwrap();
+    let results = fs::read_to_string(at.join("out/report.md")).unwrap();
     for needed in ["one eye and depth, QP 20", "same image, not encoded", "the paper's -39.6 %"] {
         assert!(results.contains(needed), "{needed}: {results}");
     }

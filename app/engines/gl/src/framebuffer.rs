@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use crate::{Aspect, Attachments, Context, Event, Filter, Format, GlApi, GlError, PixelBuffer, Texture};
+use crate::{Context, Filter, Format, GlApi, GlError, Image, PixelBuffer, Texture};
 
 /// A rectangle of a framebuffer to draw into.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +28,6 @@ impl Context {
     /// Copies a rectangle of colour to another one, stretched without filtering if the sizes differ. Values are copied
     /// bit by bit, unless only one of the two is stored as sRGB.
     pub fn copy(&self, from: &Destination, to: &Destination) {
-        let aspect = Aspect::Color(0);
-        self.tell(Event::Copied { from: from.framebuffer, to: to.framebuffer, size: to.size, aspect });
         let gl = self.raw();
         let [x, y] = from.origin.map(|n| n as i32);
         let [w, h] = from.size.map(|n| n as i32);
@@ -65,7 +63,6 @@ impl Framebuffer {
 
 impl Drop for Framebuffer {
     fn drop(&mut self) {
-        self.gl.tell(Event::FramebufferDeleted(self.raw));
         // SAFETY: created in `new`, deleted once.
         unsafe { self.gl.raw().delete_framebuffer(self.raw) };
         self.gl.count(-1);
@@ -194,11 +191,6 @@ impl RenderTarget {
     /// Attaches textures to a framebuffer, leaves it bound and returns its status.
     fn attach(&self, framebuffer: &Framebuffer, color: &[Texture], depth: Option<&Texture>) -> u32 {
         let gl = self.gl.raw();
-        let images = Attachments {
-            color: color.iter().map(Texture::image).collect(),
-            depth: depth.map(Texture::image),
-        };
-        self.gl.tell(Event::FramebufferMade(framebuffer.raw, images));
         // SAFETY: the attachments are textures of this object.
         unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer.raw));
@@ -282,12 +274,16 @@ impl RenderTarget {
 
     /// Discards the depth, so that a tile-based GPU does not write it to memory.
     pub fn discard_depth(&self) {
-        self.gl.tell(Event::Discarded { framebuffer: self.raw(), color: false, depth: true });
         // SAFETY: this target's framebuffer has the attachment, or GL ignores the call.
         unsafe {
             self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw()));
             self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_ATTACHMENT]);
         }
+    }
+
+    /// Returns the colour images and the depth image, for declarations of passes.
+    pub fn images(&self) -> impl Iterator<Item = Image> {
+        self.color.iter().chain(&self.depth).map(Texture::image)
     }
 
     /// Returns colour texture `i`.

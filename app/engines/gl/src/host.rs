@@ -4,7 +4,7 @@
 
 use glow::HasContext;
 
-use crate::{Capabilities, Context, Event, GlApi, GlError, RasterState};
+use crate::{Capabilities, Context, GlApi, GlError};
 
 /// The number of texture units in use, starting with unit 0.
 const UNITS: usize = 4;
@@ -229,7 +229,6 @@ impl Context {
     /// the number of the target's colour attachments, 1 or 2. If `encode` is true, writes to sRGB framebuffers are
     /// encoded.
     pub fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
-        self.tell(Event::StateSet(RasterState::SCREEN));
         let (gl, host) = (self.raw(), &self.host);
         // SAFETY: `Host::new` has checked that the enums of these state calls exist in this context.
         unsafe {
@@ -274,8 +273,6 @@ impl Context {
 
     /// Turns depth writes, without a test, on or off for the next draws of a pipeline.
     pub fn set_depth_write(&self, on: bool) {
-        let state = if on { RasterState::SCREEN_DEPTH } else { RasterState::SCREEN };
-        self.tell(Event::StateSet(state));
         // SAFETY: a valid enum.
         unsafe { if on { self.raw().enable(glow::DEPTH_TEST) } else { self.raw().disable(glow::DEPTH_TEST) } }
     }

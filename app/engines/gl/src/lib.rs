@@ -32,7 +32,7 @@ pub use framebuffer::{Destination, ForeignTarget, RenderTarget};
 pub use host::{HostState, Touched};
 pub use mesh::Mesh;
 pub use multisample::{MultisampleTarget, TileTarget};
-pub use observer::{Aspect, Attachments, Event, Image, Observer, Shape};
+pub use observer::{Declaration, Draw, Image, Observer, Pass, Read, Shape, Write};
 pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ProgramRecipe, ShaderSource, UniformValue};
@@ -136,7 +136,7 @@ pub struct Context {
     /// The number of textures that were deleted: their names may come again.
     deleted_textures: Cell<u64>,
     empty_vertex_array: glow::VertexArray,
-    observer: RefCell<Option<Box<dyn Observer>>>,
+    observed: RefCell<Option<observer::Observed>>,
     /// The last field, since fields are dropped in order of declaration.
     _owner: Option<Rc<dyn Any>>,
 }
@@ -256,7 +256,7 @@ impl Context {
             texture_bytes: Cell::new(0),
             deleted_textures: Cell::new(0),
             empty_vertex_array,
-            observer: RefCell::default(),
+            observed: RefCell::new(None),
             _owner: owner,
         }))
     }
@@ -291,8 +291,8 @@ impl Context {
         self.texture_bytes.set(self.texture_bytes.get().wrapping_add_signed(change));
     }
 
-    /// Runs one pass inside a KHR_debug group called `name` and, while profiling, with a timer of that name.
-    pub fn pass<R>(&self, name: &'static str, body: impl FnOnce() -> R) -> R {
+    /// Runs `body` inside a KHR_debug group called `name` and, while profiling, with a timer of that name.
+    fn grouped<R>(&self, name: &'static str, body: impl FnOnce() -> R) -> R {
         let debug = self.capabilities.debug_groups;
         // SAFETY: the entry points exist if the capability is set; the group is popped below.
         unsafe {
@@ -301,9 +301,7 @@ impl Context {
             }
         }
         self.profiler.borrow_mut().begin(&self.raw, name);
-        self.tell(Event::PassBegins(name));
         let result = body();
-        self.tell(Event::PassEnds);
         self.profiler.borrow_mut().end(&self.raw);
         // SAFETY: pops the group pushed above.
         unsafe {

@@ -5,7 +5,14 @@ use std::rc::Rc;
 use glow::HasContext;
 
 use crate::framebuffer::Framebuffer;
-use crate::{Aspect, Attachments, Context, Destination, Event, Format, GlError, RenderTarget, Texture};
+use crate::{Context, Destination, Format, GlError, RenderTarget, Texture};
+
+/// What is averaged or copied out of a target: the colour attachment of a number, or depth.
+#[derive(Clone, Copy)]
+enum Aspect {
+    Color(usize),
+    Depth,
+}
 
 /// A colour or depth attachment.
 enum Image {
@@ -83,14 +90,6 @@ impl MultisampleTarget {
         }
         self.size = size;
         self.gl.count_texture_bytes(self.bytes());
-        let what: Vec<_> = self.formats().map(|format| self.describe(format)).collect();
-        for (image, what) in self.images.iter().zip(&what) {
-            if let Image::Texture(raw) = *image {
-                self.gl.tell(Event::TextureMade(raw, *what));
-            }
-        }
-        let (color, depth) = (what[..self.colors.len()].to_vec(), what.last().copied());
-        self.gl.tell(Event::FramebufferMade(self.framebuffer.raw, Attachments { color, depth }));
         let gl = self.gl.raw();
         // SAFETY: the attachments were created for this target above.
         let (status, error) = unsafe {
@@ -150,8 +149,10 @@ impl MultisampleTarget {
         Ok(image)
     }
 
-    fn describe(&self, format: Format) -> crate::Image {
-        crate::Image { format, size: self.size, samples: self.samples }
+    /// Returns the colour images and the depth image, for declarations of passes.
+    pub fn images(&self) -> impl Iterator<Item = crate::Image> {
+        let image = |format| crate::Image { format, size: self.size, samples: self.samples };
+        self.formats().map(image)
     }
 
     /// Returns the formats of the images.
@@ -169,9 +170,6 @@ impl MultisampleTarget {
         self.gl.count_texture_bytes(-self.bytes());
         self.size = [0, 0];
         for image in std::mem::take(&mut self.images) {
-            if let Image::Texture(raw) = image {
-                self.gl.tell(Event::TextureDeleted(raw));
-            }
             // SAFETY: created in `image`, deleted once.
             unsafe {
                 match image {
@@ -203,7 +201,6 @@ impl MultisampleTarget {
 
     fn blit(&self, aspect: Aspect, to: &Destination) {
         let from = Some(self.framebuffer.raw);
-        self.gl.tell(Event::Copied { from, to: to.framebuffer, size: to.size, aspect });
         let [w, h] = to.size.map(|n| n as i32);
         let gl = self.gl.raw();
         // SAFETY: the source is this target's framebuffer; the rectangles are equal, as GL demands for samples.
@@ -236,7 +233,6 @@ impl MultisampleTarget {
             discarded[count] = attachment;
             count += 1;
         }
-        self.gl.tell(Event::Discarded { framebuffer: self.framebuffer.raw, color, depth });
         // SAFETY: this target's framebuffer has these attachments.
         unsafe {
             self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
@@ -364,9 +360,6 @@ impl TileTarget {
         }
         self.textures = textures().collect();
         self.deleted = deleted;
-        let color = colors.iter().map(|(_, image)| *image).collect();
-        let images = Attachments { color, depth: Some(depth.image()) };
-        self.gl.tell(Event::FramebufferMade(self.framebuffer.raw, images));
         Ok(())
     }
 
@@ -377,7 +370,6 @@ impl TileTarget {
 
     /// Discards the depth. The framebuffer must be bound.
     pub fn discard_depth(&self) {
-        self.gl.tell(Event::Discarded { framebuffer: self.framebuffer.raw, color: false, depth: true });
         // SAFETY: the bound framebuffer has the attachment.
         unsafe { self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_ATTACHMENT]) }
     }

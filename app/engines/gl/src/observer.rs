@@ -1,8 +1,8 @@
-//! What a context is told to do, for those who record or count it.
+//! What passes read and write, as they declare it where they draw, for whoever estimates what frames cost.
 
 use std::rc::Rc;
 
-use crate::{Context, Format, ProgramRecipe, RasterState};
+use crate::{Context, Destination, Format, ProgramRecipe, Texture};
 
 /// A texture, or an image with several samples per pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,13 +15,48 @@ pub struct Image {
     pub samples: u32,
 }
 
-/// The images that a framebuffer draws into.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Attachments {
-    /// The colour attachments.
-    pub color: Vec<Image>,
-    /// The depth attachment, if there is one.
-    pub depth: Option<Image>,
+impl From<&Texture> for Image {
+    fn from(texture: &Texture) -> Image {
+        texture.image()
+    }
+}
+
+impl Destination {
+    /// Returns the rectangle as an image, in a format that the framebuffer is known to have.
+    pub fn image(&self, format: Format) -> Image {
+        Image { format, size: self.size, samples: 1 }
+    }
+}
+
+/// An image that a pass samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Read {
+    /// The sampler's uniform; `copied` for what is copied or averaged without a program.
+    pub uniform: &'static str,
+    /// The image.
+    pub image: Image,
+}
+
+/// An image that a pass draws into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Write {
+    /// The image.
+    pub image: Image,
+    /// True if its contents are read from memory first.
+    pub is_loaded: bool,
+    /// True if its contents are written to memory afterwards.
+    pub is_stored: bool,
+}
+
+/// What a pass declares.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Declaration {
+    /// The name given to [`Context::pass`].
+    pub name: &'static str,
+    /// What it reads.
+    pub reads: Vec<Read>,
+    /// What it writes.
+    pub writes: Vec<Write>,
 }
 
 /// The triangles of a draw call.
@@ -41,108 +76,135 @@ pub enum Shape {
     },
 }
 
-/// A call that changes what is drawn, or draws. Textures and framebuffers of others are not announced.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub enum Event<'a> {
-    /// A texture has its storage.
-    TextureMade(glow::Texture, Image),
-    /// A texture is about to be deleted.
-    TextureDeleted(glow::Texture),
-    /// A framebuffer has its images, or other ones than before.
-    FramebufferMade(glow::Framebuffer, Attachments),
-    /// A framebuffer is about to be deleted.
-    FramebufferDeleted(glow::Framebuffer),
-    /// A program has been linked.
-    ProgramMade(&'a Rc<ProgramRecipe>),
-    /// A [`Context::pass`] of this name begins.
-    PassBegins(&'static str),
-    /// The innermost pass ends.
-    PassEnds,
-    /// The framebuffer of the following draws; `None` for the window's.
-    FramebufferBound(Option<glow::Framebuffer>),
+/// A draw call.
+#[derive(Clone, Copy, Debug)]
+pub struct Draw<'a> {
+    /// The program.
+    pub program: &'a Rc<ProgramRecipe>,
+    /// The triangles.
+    pub shape: Shape,
     /// Width and height of the viewport in pixels.
-    ViewportSet([u32; 2]),
-    /// The program of the following draws.
-    ProgramBound(glow::Program, &'a Rc<ProgramRecipe>),
-    /// The program samples a texture through a uniform.
-    TextureSampled {
-        /// The program.
-        program: glow::Program,
-        /// The uniform's name.
-        name: &'a str,
-        /// The texture.
-        texture: glow::Texture,
-    },
-    /// The state of the following draws, with all writes on.
-    StateSet(RasterState),
-    /// Depth writes are off until the state is set again.
-    DepthMasked,
-    /// Only the samples of this mask are drawn; `None` for all.
-    SamplesMasked(Option<u32>),
-    /// A draw call follows.
-    DrawBegins(Shape),
-    /// The draw call has been made.
-    DrawEnds,
-    /// Colour and, if `depth` is set, depth of the bound framebuffer are cleared.
-    Cleared {
-        /// True if depth is cleared, too.
-        depth: bool,
-    },
-    /// Contents of a framebuffer are discarded.
-    Discarded {
-        /// The framebuffer.
-        framebuffer: glow::Framebuffer,
-        /// True if colour is discarded.
-        color: bool,
-        /// True if depth is discarded.
-        depth: bool,
-    },
-    /// Pixels are copied, or samples averaged, into another framebuffer.
-    Copied {
-        /// The source.
-        from: Option<glow::Framebuffer>,
-        /// The target.
-        to: Option<glow::Framebuffer>,
-        /// Width and height in pixels.
-        size: [u32; 2],
-        /// The attachment of the source that is copied, into the first of its kind.
-        aspect: Aspect,
-    },
+    pub area: [u32; 2],
 }
 
-/// An attachment of a framebuffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Aspect {
-    /// The colour attachment of this number.
-    Color(usize),
-    /// The depth attachment.
-    Depth,
-}
-
-/// Is told what a context does.
+/// Is told what a context does. Each method does nothing unless it is implemented, and none may use other objects of this
+/// library, which would be observed meanwhile.
 pub trait Observer {
-    /// Takes an event of the context. Must not use other objects of this library, whose events would come in between.
-    fn observe(&mut self, gl: &Context, event: &Event);
+    /// A program has been linked.
+    fn program_made(&mut self, _recipe: &Rc<ProgramRecipe>) {}
+    /// A pass begins, perhaps within another one.
+    fn pass_begins(&mut self, _pass: &Declaration) {}
+    /// The innermost pass ends.
+    fn pass_ends(&mut self) {}
+    /// A draw call follows.
+    fn draw_begins(&mut self, _gl: &Context, _draw: &Draw) {}
+    /// The draw call has been made.
+    fn draw_ends(&mut self, _gl: &Context) {}
+}
+
+/// An observer, and the state that it is told with each draw call.
+pub(crate) struct Observed {
+    pub(crate) observer: Box<dyn Observer>,
+    pub(crate) program: Option<Rc<ProgramRecipe>>,
+    pub(crate) area: [u32; 2],
 }
 
 impl Context {
-    /// Tells an observer of all that follows; `None` ends it. An observer knows only the objects that were made while it
-    /// was there, so that one which must know all is set before any.
+    /// Tells an observer of all that follows; `None` ends it.
     pub fn set_observer(&self, observer: Option<Box<dyn Observer>>) {
-        *self.observer.borrow_mut() = observer;
+        let observed = observer.map(|observer| Observed { observer, program: None, area: [0, 0] });
+        *self.observed.borrow_mut() = observed;
     }
 
-    pub(crate) fn tell(&self, event: Event) {
-        if let Some(observer) = &mut *self.observer.borrow_mut() {
-            observer.observe(self, &event);
+    /// Does something with the observer, if there is one.
+    pub(crate) fn observe(&self, tell: impl FnOnce(&mut Observed)) {
+        if let Some(observed) = &mut *self.observed.borrow_mut() {
+            tell(observed);
         }
     }
 
-    /// Runs a draw call between its two events.
+    /// Makes a draw call, and tells of it.
     pub(crate) fn drawing(&self, shape: Shape, draw: impl FnOnce()) {
-        self.tell(Event::DrawBegins(shape));
+        self.observe(|Observed { observer, program, area }| {
+            if let Some(program) = program {
+                observer.draw_begins(self, &Draw { program, shape, area: *area });
+            }
+        });
         draw();
-        self.tell(Event::DrawEnds);
+        self.observe(|Observed { observer, program, .. }| {
+            if program.is_some() {
+                observer.draw_ends(self);
+            }
+        });
+    }
+
+    /// Returns a pass, to be declared and run. `name` is that of its KHR_debug group and of its timer.
+    pub fn pass(&self, name: &'static str) -> Pass<'_> {
+        let is_observed = self.observed.borrow().is_some();
+        let declaration = is_observed.then(|| Declaration { name, reads: Vec::new(), writes: Vec::new() });
+        Pass { gl: self, name, declaration }
+    }
+}
+
+/// A pass that declares what it reads and writes where it draws:
+/// `gl.pass("outlines").read("color_map", color).write(target.images()).run(|| ...)`. Unless somebody
+/// [observes](Context::set_observer) the context, declarations cost nothing.
+#[must_use = "a pass does nothing until it is run"]
+pub struct Pass<'a> {
+    gl: &'a Context,
+    name: &'static str,
+    /// `None` if nobody observes.
+    declaration: Option<Declaration>,
+}
+
+impl Pass<'_> {
+    /// Declares an image that the pass samples through a uniform.
+    pub fn read(mut self, uniform: &'static str, image: impl Into<Image>) -> Self {
+        if let Some(declaration) = &mut self.declaration {
+            declaration.reads.push(Read { uniform, image: image.into() });
+        }
+        self
+    }
+
+    /// Declares images that the pass clears or overwrites, and stores.
+    pub fn write(self, images: impl IntoIterator<Item = Image>) -> Self {
+        self.draw_into(images, false, true)
+    }
+
+    /// Declares images that the pass loads, changes and stores.
+    pub fn load(self, images: impl IntoIterator<Item = Image>) -> Self {
+        self.draw_into(images, true, true)
+    }
+
+    /// Declares images that the pass draws into without memory traffic of its own: they are discarded, or a pass before or
+    /// after this one in the same tile has stored or stores them.
+    pub fn in_tile(self, images: impl IntoIterator<Item = Image>) -> Self {
+        self.draw_into(images, false, false)
+    }
+
+    fn draw_into(
+        mut self,
+        images: impl IntoIterator<Item = Image>,
+        is_loaded: bool,
+        is_stored: bool,
+    ) -> Self {
+        if let Some(declaration) = &mut self.declaration {
+            let writes = images.into_iter().map(|image| Write { image, is_loaded, is_stored });
+            declaration.writes.extend(writes);
+        }
+        self
+    }
+
+    /// Runs the pass inside a KHR_debug group and, while profiling, with a timer.
+    pub fn run<R>(self, body: impl FnOnce() -> R) -> R {
+        let Pass { gl, name, declaration } = self;
+        if let Some(declaration) = &declaration {
+            gl.observe(|observed| observed.observer.pass_begins(declaration));
+        }
+        let result = gl.grouped(name, body);
+        if declaration.is_some() {
+            gl.observe(|observed| observed.observer.pass_ends());
+        }
+        result
     }
 }

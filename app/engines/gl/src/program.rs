@@ -7,7 +7,7 @@ use glam::{IVec2, IVec3, IVec4, Mat3, Mat4, Vec2, Vec3, Vec4};
 use glow::HasContext;
 use yoro_shaders::{Assembled, MissingFile};
 
-use crate::{Context, Event, GlApi, GlError, Texture};
+use crate::{Context, GlApi, GlError, Texture};
 
 /// The shader files of a program.
 #[derive(Clone, Copy, Debug)]
@@ -114,7 +114,7 @@ impl Program {
                 let log = raw_gl.get_program_info_log(raw);
                 return Err(GlError::Shader { stage: "program", file: last_file.to_owned(), log });
             }
-            gl.tell(Event::ProgramMade(&recipe));
+            gl.observe(|observed| observed.observer.program_made(&recipe));
             for i in 0..raw_gl.get_program_parameter_i32(raw, glow::ACTIVE_UNIFORMS) as u32 {
                 if let Some(uniform) = raw_gl.get_active_uniform(raw, i)
                     && let Some(location) = raw_gl.get_uniform_location(raw, &uniform.name)
@@ -131,7 +131,7 @@ impl Program {
     pub fn bind(&self) -> &Program {
         // SAFETY: the program is linked.
         unsafe { self.gl.raw().use_program(Some(self.raw)) };
-        self.gl.tell(Event::ProgramBound(self.raw, &self.recipe));
+        self.gl.observe(|observed| observed.program = Some(self.recipe.clone()));
         self
     }
 
@@ -148,7 +148,7 @@ impl Program {
     /// Binds a 2-D texture to a unit and points a sampler at the unit.
     pub fn texture(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
         super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D, texture);
-        self.set_sampler(name, unit, texture)
+        self.set(name, unit as i32)
     }
 
     /// Binds an array texture to a unit and points a sampler at the unit.
@@ -160,19 +160,12 @@ impl Program {
     /// Binds a multisample texture to a unit and points a sampler at the unit.
     pub fn texture_multisample(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
         super::texture::bind_texture(&self.gl, unit, glow::TEXTURE_2D_MULTISAMPLE, texture);
-        self.set_sampler(name, unit, texture)
+        self.set(name, unit as i32)
     }
 
     /// Binds a texture of this library, 2-D or an array, to a unit and points a sampler at the unit.
     pub fn texture_of(&self, name: &str, unit: u32, texture: &Texture) -> &Program {
         texture.bind(unit);
-        self.set_sampler(name, unit, texture.raw())
-    }
-
-    fn set_sampler(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
-        if self.uniforms.contains_key(name) {
-            self.gl.tell(Event::TextureSampled { program: self.raw, name, texture });
-        }
         self.set(name, unit as i32)
     }
 }

@@ -2,7 +2,7 @@
 
 use glow::HasContext;
 
-use crate::{Context, Event};
+use crate::Context;
 
 /// glSampleMaski.
 pub(crate) type SetMask = unsafe extern "system" fn(word: u32, mask: u32);
@@ -24,7 +24,6 @@ impl Context {
     /// [`crate::Capabilities::sample_masks`]. Set `None` afterwards.
     pub fn mask_samples(&self, mask: Option<u32>) {
         let Some(masks) = &self.sample_masks else { return };
-        self.tell(Event::SamplesMasked(mask));
         // SAFETY: the entry point of OpenGL ES 3.1, and an enum of the same version.
         unsafe {
             match mask {

@@ -2,7 +2,7 @@
 
 use glow::HasContext;
 
-use crate::{Context, Event};
+use crate::Context;
 
 /// More rows than any framebuffer has.
 
@@ -53,7 +53,6 @@ impl RasterState {
 impl Context {
     /// Sets depth test, blending and culling. Turns off scissor test, stencil test and dithering, and turns on all writes.
     pub fn set_raster_state(&self, state: &RasterState) {
-        self.tell(Event::StateSet(*state));
         let gl = self.raw();
         // SAFETY: state calls with valid enums.
         unsafe {
@@ -90,7 +89,6 @@ impl Context {
 
     /// Turns off depth writes until the state is set again, for surfaces that are tested and blended.
     pub fn mask_depth(&self) {
-        self.tell(Event::DepthMasked);
         // SAFETY: a state call without objects.
         unsafe { self.raw().depth_mask(false) }
     }
@@ -153,7 +151,6 @@ impl Context {
 
     /// Clears all pixels that pass the scissor test.
     fn clear_unmasked(&self, depth: Option<f32>) {
-        self.tell(Event::Cleared { depth: depth.is_some() });
         let gl = self.raw();
         let mut mask = glow::COLOR_BUFFER_BIT;
         // SAFETY: state calls with valid enums.
@@ -186,7 +183,7 @@ impl Context {
 
     /// Sets the viewport, in pixels from the lower left corner of the bound framebuffer.
     pub fn set_viewport(&self, origin: [u32; 2], size: [u32; 2]) {
-        self.tell(Event::ViewportSet(size));
+        self.observe(|observed| observed.area = size);
         let ([x, y], [w, h]) = (origin.map(|n| n as f32), size.map(|n| n as f32));
         // SAFETY: the context is current, and sizes are not negative.
         unsafe { self.host.set_viewport(self.raw(), [x, y, w, h]) }
@@ -194,7 +191,6 @@ impl Context {
 
     /// Binds any framebuffer (`None` for the window's) and sets the viewport, in pixels from its lower left corner.
     pub fn bind_framebuffer(&self, framebuffer: Option<glow::Framebuffer>, origin: [u32; 2], size: [u32; 2]) {
-        self.tell(Event::FramebufferBound(framebuffer));
         // SAFETY: GL refuses a name that is not a framebuffer.
         unsafe { self.raw().bind_framebuffer(glow::FRAMEBUFFER, framebuffer) };
         self.set_viewport(origin, size);

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use crate::{Context, Event, GlError, Image};
+use crate::{Context, GlError, Image};
 
 /// A pixel format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -196,7 +196,6 @@ impl Texture {
         let level_0 = texture.byte_len() * layers.unwrap_or(1) as usize;
         texture.bytes = if mipmapped { level_0 / 3 * 4 } else { level_0 };
         gl.count_texture_bytes(texture.bytes as isize);
-        gl.tell(Event::TextureMade(raw, texture.image()));
         if !gl.has_storage(target) {
             let reason = gl.take_errors().unwrap_or_default();
             if reason.is_empty() || reason.contains("OUT_OF_MEMORY") {
@@ -302,7 +301,6 @@ impl Context {
 impl Drop for Texture {
     fn drop(&mut self) {
         self.gl.deleted_textures.set(self.gl.deleted_textures.get() + 1);
-        self.gl.tell(Event::TextureDeleted(self.raw));
         // SAFETY: created in `new`, deleted once.
         unsafe { self.gl.raw().delete_texture(self.raw) };
         self.gl.count(-1);

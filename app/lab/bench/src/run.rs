@@ -6,7 +6,7 @@ use anyhow::Context as _;
 use image::RgbImage;
 use indicatif::ProgressBar;
 
-use crate::bench::{BlankFinder, PreparedContender, spread};
+use crate::bench::{BlankFinder, Subject, spread};
 use crate::report::{Cost, MethodCost, PassTime, SceneReport, Viewpoint};
 use yoro::eyes::{Eye, EyeOptions, EyePair};
 use yoro_files::interrupt;
@@ -73,7 +73,7 @@ impl Plan {
 /// A method under measurement.
 struct Timed {
     name: &'static str,
-    contender: PreparedContender,
+    contender: Subject,
     milliseconds: Vec<f64>,
     /// The samples of each pass, in the order of the first frame.
     passes: Vec<(&'static str, Vec<f64>)>,
@@ -138,7 +138,7 @@ impl<'a> Field<'a> {
         };
         let mut contenders = Vec::new();
         for candidate in [conventional].iter().chain(&plan.candidates) {
-            let contender = PreparedContender::new(gl, candidate.method, settings, &candidate.options)?;
+            let contender = Subject::new(gl, candidate.method, settings, &candidate.options)?;
             contenders.push(Timed {
                 name: candidate.name,
                 contender,

@@ -198,7 +198,7 @@ impl Board {
         pair: &EyePair,
         eyes: &[Destination; 2],
     ) {
-        self.gl.pass("menu", || {
+        self.gl.pass("menu").run(|| {
             self.gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
                 self.run(&self.texture, to_panel(board, pair, eye), pointer, false, &eyes[eye.index()]);
@@ -209,7 +209,7 @@ impl Board {
 
     /// Fills an image of the panel's size with linear colour for a compositor, not premultiplied by alpha.
     pub fn draw_linear(&self, pointer: Option<Vec2>, to: &Destination) {
-        self.gl.pass("menu", || {
+        self.gl.pass("menu").run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.run(&self.texture, onto(to), pointer, true, to);
         });
@@ -223,7 +223,7 @@ impl Board {
         self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
         self.gl.fill(window.origin, window.size, [f32::from(GROUND) / 255.0; 4]);
         let panel = Destination { origin, size, ..*window };
-        self.gl.pass("menu", || {
+        self.gl.pass("menu").run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.run(&self.texture, onto(&panel), None, false, &panel);
         });
@@ -233,13 +233,13 @@ impl Board {
             let at = [size[0] - width - scaled(INSET), size[1] - height - scaled(INSET)];
             let origin = [origin[0] + at[0], origin[1] + at[1]];
             let to = Destination { origin, size: [width, height], ..*window };
-            self.gl.pass("menu", || self.run(&self.picture, onto(&to), None, false, &to));
+            self.gl.pass("menu").run(|| self.run(&self.picture, onto(&to), None, false, &to));
         }
     }
 
     /// Draws a cross into a window's upper left corner and a gear into its upper right corner, each `side` pixels wide.
     pub fn draw_corners(&self, side: u32, window: &Destination) {
-        self.gl.pass("menu", || {
+        self.gl.pass("menu").run(|| {
             self.gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for (sign, right) in self.signs.iter().zip([0, window.size[0].saturating_sub(side)]) {
                 let y = window.origin[1] + window.size[1].saturating_sub(side);

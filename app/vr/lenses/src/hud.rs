@@ -179,7 +179,7 @@ impl Panel<'_> {
     /// Fills a rectangle of the panel's size. The background of the letters is translucent; colour is not premultiplied
     /// by alpha.
     pub fn draw(&self, to: &Destination) {
-        self.hud.gl.pass("hud", || {
+        self.hud.gl.pass("hud").run(|| {
             self.hud.gl.set_raster_state(&RasterState::SCREEN);
             self.hud.draw(to);
         });
@@ -189,7 +189,7 @@ impl Panel<'_> {
     /// whole eyes, `pair` those of the images.
     pub fn draw_into_eyes(&self, shown: &EyePair, pair: &EyePair, eyes: &[Destination; 2]) {
         let gl = &self.hud.gl;
-        gl.pass("hud", || {
+        gl.pass("hud").run(|| {
             gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
                 let to = &eyes[eye.index()];

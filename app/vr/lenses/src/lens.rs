@@ -8,7 +8,7 @@ use glam::{Mat4, Quat, Vec2, Vec4};
 use crate::optics::{Optics, mesh_strip};
 use yoro::eyes::{Composition, Eye, Frustum};
 use yoro::opengl::LevelImages;
-use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource, Texture};
+use yoro_gl::{Context, Destination, Format, GlError, Mesh, Program, RasterState, ShaderSource, Texture};
 
 /// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are specified. For
 /// acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
@@ -85,7 +85,7 @@ impl LensPass {
 
     fn draw(&self, program: &Program, turn: Quat, window: &Destination, set_eye: impl Fn(Eye)) {
         let [width, height] = window.size;
-        self.gl.pass("lens", || {
+        self.gl.pass("lens").write([window.image(Format::Rgba8)]).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
             self.gl.fill(window.origin, window.size, [0.0, 0.0, 0.0, 1.0]);
@@ -117,7 +117,7 @@ mod tests {
     use crate::optics::{Distortion, MESH_RESOLUTION, Rotation, Screen};
     use crate::params::ViewerParams;
     use yoro_context::{Backend, Headless};
-    use yoro_gl::{Filter, Format, RenderTarget};
+    use yoro_gl::{Filter, RenderTarget};
 
     const WINDOW: [u32; 2] = [320, 180];
 

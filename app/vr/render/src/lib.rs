@@ -13,6 +13,6 @@ mod view;
 
 pub use prepared::PreparedScene;
 pub use view::{
-    DepthCopy, DepthImage, DepthReader, DepthResolve, GpuScene, MAX_POINT_LIGHTS, MSAA, PASSES, Pass,
-    RenderSettings, RenderedView, Renderer, Selection, TilePart, ViewReader, ViewTargets,
+    DepthCopy, DepthImage, DepthReader, DepthResolve, GpuScene, MAX_POINT_LIGHTS, MSAA, RenderSettings,
+    RenderedView, Renderer, Selection, ViewReader, ViewTargets,
 };

@@ -22,6 +22,7 @@ pub struct Row {
     pub program: String,
     /// The stage, as in [`Stage::name`].
     pub stage: String,
+    /// Number of instructions, as counted by the compiler; on Adreno issue slots.
     pub instructions: u32,
     /// Issue slots per lane if each loop's body and each side of a branch run once. Not for vertex shaders.
     pub slots: Option<u32>,
@@ -193,6 +194,7 @@ impl FromStr for Row {
 pub struct Table {
     /// Mesa's version.
     pub mesa: String,
+    /// The rows, sorted by GPU, program and stage.
     pub rows: Vec<Row>,
 }
 

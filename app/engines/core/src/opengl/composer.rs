@@ -2,10 +2,10 @@
 
 use std::rc::Rc;
 
-use yoro_gl::{Context, Destination, GlError, Program, ShaderSource};
+use yoro_gl::{Context, Destination, Format, GlError, Image, Program, ShaderSource};
 
 use super::pipeline::preserving;
-use super::{GlState, Options, Outputs, Part, draw_target};
+use super::{GlState, Options, Outputs, Part, draw_target, target_images};
 use crate::eyes::Composition;
 use crate::synthesis::{LevelPlaces, LevelUniforms};
 
@@ -80,7 +80,12 @@ impl Composer {
         let gl = &*self.gl;
         preserving(gl, &self.options, self.outputs, || {
             gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
-            gl.pass("compose", || {
+            let color = |size| Image { format: Format::Rgba8, size, samples: 1 };
+            let mut pass = gl.pass("compose").read("wide_map", color(composition.wide.size));
+            if let Some(inset) = composition.inset {
+                pass = pass.read("inset_map", color(inset.place.size));
+            }
+            pass.write(target_images(target, self.outputs)).run(|| {
                 images.set(self.program.bind(), composition, target.origin);
                 gl.filter_unit(INSET_UNIT);
                 draw_target(gl, target, self.outputs);

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use yoro_gl::{Context, Format, GlError, Program, RenderTarget, ShaderSource};
+use yoro_gl::{Context, Format, GlError, Image, Program, RenderTarget, ShaderSource};
 
 use super::pipeline::preserving;
 use super::{Destination, Options, Outputs, Source};
@@ -58,7 +58,9 @@ impl GuessedDepth {
             let places = source.places(warp.source_size, &whole, options.parts);
             self.target.resize(places.image_size)?;
             gl.begin_synthesis(1, false);
-            gl.pass("guessed depth", || {
+            let [depth, color] = options.source_images(warp.source_size);
+            let pass = gl.pass("guessed depth").read("depth_map", depth).read("color_map", color);
+            pass.write([Image { format: Format::Depth24, ..depth }]).run(|| {
                 let place = Destination {
                     origin: places.source_origin,
                     size: warp.source_size,

@@ -18,7 +18,7 @@ mod pipeline;
 
 use crate::synthesis::Uniforms;
 use crate::synthesis::backend::{Places, WarpKind, map_sizes};
-use yoro_gl::Program;
+use yoro_gl::{Format, Image, Program};
 
 pub use composer::{Composer, InsetImage, LevelImage, LevelImages};
 pub use glow;
@@ -153,6 +153,12 @@ impl Options {
         ])
     }
 
+    /// Returns the images of a source of this size, for declarations: `depth_map` and `color_map`.
+    fn source_images(&self, size: [u32; 2]) -> [Image; 2] {
+        let depth = if self.depth_pairs { Format::Rg16F } else { Format::Depth32F };
+        [depth, Format::Rgba8].map(|format| Image { format, size, samples: 1 })
+    }
+
     /// Binds depth and colour of the source to units 0 and 1. The program must be current.
     fn bind_source(&self, program: &Program, source: Source) {
         for (name, unit, texture) in [("depth_map", 0, source.depth), ("color_map", 1, source.color)] {
@@ -195,4 +201,11 @@ pub fn draw_target(gl: &Context, target: &Destination, outputs: Outputs) {
     gl.set_depth_write(outputs.depth);
     gl.draw_screen();
     gl.set_depth_write(false);
+}
+
+/// Declares what [`draw_target`] writes.
+fn target_images(target: &Destination, outputs: Outputs) -> impl Iterator<Item = Image> {
+    let depth = outputs.depth.then(|| target.image(Format::Depth32F));
+    let map = outputs.source_map.then(|| target.image(Format::R32Ui));
+    [Some(target.image(Format::Rgba8)), map, depth].into_iter().flatten()
 }

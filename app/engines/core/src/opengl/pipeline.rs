@@ -3,9 +3,11 @@
 use std::marker::PhantomData;
 use std::rc::Rc;
 
-use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
+use yoro_gl::{
+    Context, Destination, Filter, Format, GlError, Image, Program, RenderTarget, ShaderSource, Touched,
+};
 
-use super::{Bloom, GlState, Options, Outputs, Source, draw_target};
+use super::{Bloom, GlState, Options, Outputs, Source, draw_target, target_images};
 use crate::eyes::{MotionWarp, PoseWarp, Warp};
 use crate::synthesis::backend::{PerKind, UniformBlock as _, WarpKind, map_sizes};
 
@@ -217,18 +219,23 @@ impl<W: WarpKind> Pipeline<W> {
             self.options.bind_source(program.bind(), source);
             uniforms.set(program);
         };
-        gl.pass(shaders.tiles[0], || {
+        let [depth, color] = self.options.source_images(warp.sizes()[0]);
+        let [tile_map, span_map] = [(&self.tile_map, tile_size), (&self.span_map, span_size)]
+            .map(|(map, size)| Image { size, ..map.color(0).image() });
+        gl.pass(shaders.tiles[0]).read("depth_map", depth).write([tile_map]).run(|| {
             self.tile_map.bind_part(tile_size);
             begin(&self.tiles);
             gl.draw_screen();
         });
-        gl.pass(shaders.spans[0], || {
+        gl.pass(shaders.spans[0]).read("tile_map", tile_map).write([span_map]).run(|| {
             self.span_map.bind_part(span_size);
             begin(&self.spans);
             self.spans.texture("tile_map", 2, self.tile_map.color(0).raw());
             gl.draw_screen();
         });
-        gl.pass(shaders.march, || {
+        let march = gl.pass(shaders.march).read("depth_map", depth).read("color_map", color);
+        let march = march.read("tile_map", tile_map).read("span_map", span_map);
+        march.write(target_images(target, self.outputs)).run(|| {
             begin(&self.march);
             self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
             self.march.texture("span_map", 3, self.span_map.color(0).raw());

@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::inpaint::PatcherKind;
-use yoro::eyes::GuardBand;
 use yoro_render::stereo::{Method, Pipeline, StereoOptions};
 
 /// A stereo method, synthesis with one of its pipelines, or a patcher.
@@ -13,47 +12,12 @@ pub enum Contender {
     Method(Method),
     /// Synthesis of the other eye by this pipeline.
     Synthesized(Pipeline),
-    /// The pipeline gather with this guard band.
-    Band(Band),
     /// The paper's pipeline without interpolation between ImBuffer entries.
     PaperNearest,
     /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as in its text.
     PaperStrict,
     /// A patcher, on the reprojected image that all patchers share.
     Patcher(PatcherKind),
-}
-
-/// The guard bands of the suite `guard-band`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Band {
-    /// [`GuardBand::None`].
-    None,
-    /// Complete from 1 m.
-    OneMetre,
-    /// Complete from half a metre.
-    HalfMetre,
-}
-
-impl Band {
-    /// All guard bands.
-    pub const ALL: [Band; 3] = [Band::None, Band::OneMetre, Band::HalfMetre];
-
-    fn name(self) -> &'static str {
-        match self {
-            Band::None => "none",
-            Band::OneMetre => "1",
-            Band::HalfMetre => "0.5",
-        }
-    }
-
-    /// Returns the guard band.
-    pub fn guard_band(self) -> GuardBand {
-        match self {
-            Band::None => GuardBand::None,
-            Band::OneMetre => GuardBand::Distance(1.0),
-            Band::HalfMetre => GuardBand::Distance(0.5),
-        }
-    }
 }
 
 impl Contender {
@@ -68,13 +32,8 @@ impl Contender {
     /// Returns every contender in the order of tables.
     pub fn all() -> Vec<Contender> {
         let variants = [Contender::PaperNearest, Contender::PaperStrict];
-        let synthesis = Contender::methods().into_iter().chain(variants).chain(Contender::bands());
+        let synthesis = Contender::methods().into_iter().chain(variants);
         synthesis.chain(Contender::patchers()).collect()
-    }
-
-    /// Returns synthesis with each guard band.
-    pub fn bands() -> Vec<Contender> {
-        Band::ALL.map(Contender::Band).to_vec()
     }
 
     /// Returns the stereo methods, with synthesis once for each of its pipelines.
@@ -104,7 +63,6 @@ impl Contender {
         match self {
             Contender::Method(method) => method.name().into(),
             Contender::Synthesized(pipeline) => format!("yoro-{}", pipeline.name()),
-            Contender::Band(band) => format!("yoro-guard-{}", band.name()),
             Contender::PaperNearest => "yoro-paper-nearest".into(),
             Contender::PaperStrict => "yoro-paper-strict".into(),
             Contender::Patcher(kind) => format!("patcher-{}", kind.name()),
@@ -122,15 +80,11 @@ impl Contender {
         let (method, pipeline) = match self {
             Contender::Method(method) => (method, Pipeline::default()),
             Contender::Synthesized(pipeline) => (Method::Synthesized, pipeline),
-            Contender::Band(_) => (Method::Synthesized, Pipeline::Gather),
             Contender::PaperNearest | Contender::PaperStrict => (Method::Synthesized, Pipeline::Paper),
             Contender::Patcher(_) => return None,
         };
         let mut options = StereoOptions::of_pipeline(pipeline);
         options.policy = None;
-        if let Contender::Band(band) = self {
-            options.guard_band = band.guard_band();
-        }
         let paper = &mut options.synthesis.paper;
         paper.linear_interpolation &= self != Contender::PaperNearest;
         paper.strict |= self == Contender::PaperStrict;

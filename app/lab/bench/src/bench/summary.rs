@@ -10,7 +10,7 @@ use yoro_report::stats::{self, median, unique};
 /// A column: heading, metric, number of decimals, and the function that combines its values.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
 
-const COLUMNS: [Column; 11] = [
+const COLUMNS: [Column; 10] = [
     ("frame ms", metric::FRAME_MS, 1, median),
     ("CPU ms", metric::CPU_MS, 1, median),
     ("GPU ms", metric::GPU_MS, 2, median),
@@ -19,7 +19,6 @@ const COLUMNS: [Column; 11] = [
     ("SSIM", metric::SSIM, 4, mean),
     ("FLIP", metric::FLIP, 4, mean),
     ("flicker", metric::FLICKER, 2, mean),
-    ("border dB", metric::BORDER_PSNR, 2, mean),
     ("kbit/s", metric::KBIT_S, 0, mean),
     ("saved %", metric::SAVED, 1, mean),
 ];

@@ -82,7 +82,7 @@ impl Screen {
         let size = image.size();
         let (mut color, mut disparity) = (input.color.raw(), input.disparity.raw());
         gl.set_raster_state(&RasterState::SCREEN);
-        gl.pass(self.name, || {
+        gl.pass(self.name).run(|| {
             for pass in 0..passes {
                 let target = &self.targets[pass as usize % 2];
                 target.bind();

@@ -4,6 +4,7 @@ use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
 use crate::view::{GpuScene, Layout, Renderer, Targets};
 use yoro::eyes::{Eye, EyePair, GuardBand, View};
+use yoro_gl::Format;
 
 /// One render from the dominant eye's position, with the union of both frusta. Each eye shows its own part, which is
 /// the same image if the frusta are the same.
@@ -34,7 +35,9 @@ impl StereoMethod for Mono {
         renderer.develop(targets, source, Eye::Left, origin, &frame.to(dominant).color, None);
         if other_origin == origin {
             let gl = &renderer.gl;
-            gl.pass("copy", || gl.copy(&frame.to(dominant).color, &frame.to(other).color));
+            let [from, to] = [dominant, other].map(|eye| frame.to(eye).color);
+            let pass = gl.pass("copy").read("copied", from.image(Format::Rgba8));
+            pass.write([to.image(Format::Rgba8)]).run(|| gl.copy(&from, &to));
         } else {
             renderer.develop(targets, source, Eye::Left, other_origin, &frame.to(other).color, None);
         }

@@ -9,7 +9,7 @@ use super::*;
 use crate::view::{DepthResolve, RenderSettings};
 use yoro::eyes::{DepthConvention, Eye, EyePair, Ndc, Pose};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Capabilities, Destination, Event, Filter, Format, Observer, RenderTarget};
+use yoro_gl::{Capabilities, Destination, Filter, Format, Observer, ProgramRecipe, RenderTarget};
 
 const SIZE: [u32; 2] = [80, 60];
 
@@ -112,8 +112,8 @@ type Limit = fn(&mut Capabilities);
 struct Counted(Rc<Cell<usize>>);
 
 impl Observer for Counted {
-    fn observe(&mut self, _: &Context, event: &Event) {
-        self.0.set(self.0.get() + usize::from(matches!(event, Event::ProgramMade(_))));
+    fn program_made(&mut self, _: &Rc<ProgramRecipe>) {
+        self.0.set(self.0.get() + 1);
     }
 }
 

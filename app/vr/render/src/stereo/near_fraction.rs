@@ -7,7 +7,7 @@ use glam::IVec2;
 use super::readback::Readback;
 use crate::view::{DepthImage, DepthProgram};
 use yoro::eyes::{DepthConvention, DepthRange};
-use yoro_gl::{Context, GlError, RasterState};
+use yoro_gl::{Context, GlError, Image, RasterState};
 
 /// Texels per side of the image that [`NearFraction`] reads back, as in `stereo/near_fraction.frag`.
 const GRID: u32 = 16;
@@ -43,7 +43,9 @@ impl NearFraction {
     ) -> Result<(), GlError> {
         let to_ivec = |v: [u32; 2]| IVec2::new(v[0] as i32, v[1] as i32);
         let (gl, program, readback) = (&self.gl, &mut self.program, &mut self.readback);
-        gl.pass("near fraction", || {
+        let image = Image { size, ..depth.texture.image() };
+        let pass = gl.pass("near fraction").read("depth_map", image);
+        pass.write(readback.image().images()).run(|| {
             gl.set_raster_state(&RasterState::SCREEN);
             readback.image().bind();
             program

@@ -165,13 +165,18 @@ impl Over {
             frame.renderer.draw_over(&frame.scene, &view, over.near, samples);
         }
         match (self.way, &self.multisample, &self.tile, &self.image) {
-            (Way::Samples, Some(samples), ..) => self.gl.pass("resolve", || {
-                samples.average(0, &frame.to(eye).color);
-                samples.discard(true, true);
-            }),
+            (Way::Samples, Some(samples), ..) => {
+                let pass = self.gl.pass("resolve").in_tile(samples.images());
+                pass.write([frame.to(eye).color.image(Format::Rgba8)]).run(|| {
+                    samples.average(0, &frame.to(eye).color);
+                    samples.discard(true, true);
+                });
+            }
             (Way::Tile, _, Some((tile, _)), _) => tile.discard_depth(),
             (Way::Image, .., Some(image)) => {
-                self.gl.pass("copy", || image.copy_color([0, 0], &frame.to(eye).color));
+                let to = &frame.to(eye).color;
+                let pass = self.gl.pass("copy").read("copied", image.color(0));
+                pass.write([to.image(Format::Rgba8)]).run(|| image.copy_color([0, 0], to));
                 let depth = DepthImage {
                     texture: image.depth(),
                     origin: [0, 0],

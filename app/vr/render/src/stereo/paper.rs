@@ -114,13 +114,14 @@ impl Synthesis for Paper {
         let gl = &self.gl;
         let raw = gl.raw();
         let uniforms = Uniforms::new(warp, target.origin);
-        gl.pass("paper reproject", || {
+        gl.pass("paper reproject").write(self.written_to.images()).run(|| {
             self.written_to.bind();
             set_source(self.reproject.bind(), source, &uniforms);
             self.set_imbuffer(&self.reproject);
             gl.draw_screen();
         });
-        gl.pass("paper scatter", || {
+        let pass = gl.pass("paper scatter").read("written_to_map", self.written_to.color(0));
+        pass.write(self.imbuffer.images()).run(|| {
             self.imbuffer.bind();
             let imbuffer = self.imbuffer.color(0).raw();
             set_source(self.scatter.bind(), source, &uniforms);
@@ -134,7 +135,8 @@ impl Synthesis for Paper {
                 raw.memory_barrier(glow::TEXTURE_FETCH_BARRIER_BIT);
             }
         });
-        gl.pass("paper patch", || {
+        let pass = gl.pass("paper patch").read("imbuffer", self.imbuffer.color(0));
+        pass.write([target.image(Format::Rgba8)]).run(|| {
             set_source(self.patch.bind(), source, &uniforms);
             self.set_imbuffer(&self.patch);
             self.patch.set("kernel_height", self.options.kernel_height.clamp(1, MAX_KERNEL_HEIGHT) as i32);

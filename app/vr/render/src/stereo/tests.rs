@@ -1,5 +1,6 @@
 //! Tests of private parts: seams, reprojected shading, requested depths, drivers.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
 use glam::{Quat, Vec3};
@@ -13,7 +14,7 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose, Stere
 use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_assets::{Alpha, Material, Model, Motion, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Destination, Format, Profiling, RenderTarget};
+use yoro_gl::{Context, Declaration, Destination, Draw, Format, Observer, Profiling, RenderTarget};
 
 const SIZE: [u32; 2] = [160, 120];
 
@@ -271,6 +272,58 @@ fn mono_shows_each_eye_its_own_part_of_the_view() {
             assert!(equal > 0.99, "{dominant:?} dominant, {eye:?}: {equal}");
         }
     }
+}
+
+/// Notes what passes declare, and the draw calls of each.
+#[derive(Default)]
+struct Noted {
+    declared: Vec<Declaration>,
+    open: Vec<&'static str>,
+    drawn: Vec<(&'static str, [u32; 2])>,
+}
+
+struct Noting(Rc<RefCell<Noted>>);
+
+impl Observer for Noting {
+    fn pass_begins(&mut self, pass: &Declaration) {
+        let mut noted = self.0.borrow_mut();
+        noted.open.push(pass.name);
+        noted.declared.push(pass.clone());
+    }
+
+    fn pass_ends(&mut self) {
+        self.0.borrow_mut().open.pop();
+    }
+
+    fn draw_begins(&mut self, _: &Context, draw: &Draw) {
+        let mut noted = self.0.borrow_mut();
+        let pass = noted.open.last().copied().unwrap_or_default();
+        noted.drawn.push((pass, draw.area));
+    }
+}
+
+#[test]
+fn passes_declare_what_they_read_and_write() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut rig = Rig::new(gl, &local());
+    let mut method = create(gl, Method::Synthesized, &local(), &StereoOptions::default()).unwrap();
+    let pair = pair(Eye::Right, DepthConvention::Reversed);
+    rig.render(&mut *method, &pair);
+    let noted = Rc::<RefCell<Noted>>::default();
+    gl.set_observer(Some(Box::new(Noting(noted.clone()))));
+    rig.render(&mut *method, &pair);
+    gl.set_observer(None);
+    let Noted { declared, open, drawn } = &*noted.borrow();
+    assert!(open.is_empty() && drawn.iter().all(|(pass, _)| !pass.is_empty()), "{drawn:?}");
+    let find = |name: &str| declared.iter().find(|pass| pass.name == name).unwrap();
+    let wide = find("surfaces").writes[0].image;
+    assert!(wide.size[0] > SIZE[0] && wide.size[1] == SIZE[1], "{wide:?}");
+    let march = find("gather march");
+    let color = march.reads.iter().find(|read| read.uniform == "color_map").unwrap();
+    assert_eq!((color.image.size, march.writes[0].image.size), (wide.size, SIZE));
+    assert!(march.writes[0].is_stored && !march.writes[0].is_loaded);
+    assert!(drawn.contains(&("gather march", SIZE)), "{drawn:?}");
 }
 
 /// Settings with several samples in each pixel.

@@ -5,7 +5,8 @@ use std::rc::Rc;
 use glam::{Vec2, Vec4};
 
 use yoro_gl::{
-    Blend, Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
+    Blend, Context, Filter, Format, GlError, Image, Pass, Program, RasterState, RenderTarget, ShaderSource,
+    Texture,
 };
 
 /// Share of the bloom that is added to the picture.
@@ -109,10 +110,21 @@ impl BloomPass {
         })
     }
 
+    fn declare(&self, targets: &BloomTargets, shining: &Shining) -> Pass<'_> {
+        let picture = Image { size: shining.size, ..shining.picture.image() };
+        let mut pass = self.gl.pass("bloom").read("source", picture).write(targets.levels[0].images());
+        for pair in targets.levels.windows(2) {
+            // Down to the smaller level, and up again.
+            pass = pass.read("source", pair[0].color(0)).write(pair[1].images());
+            pass = pass.read("source", pair[1].color(0)).load(pair[0].images());
+        }
+        pass
+    }
+
     /// Computes the bloom of a picture that was exposed with `exposure`.
     pub fn run(&self, targets: &BloomTargets, shining: &Shining, exposure: f32) {
         let texel = |texture: &Texture| 1.0 / Vec2::from(texture.size().map(|n| n as f32));
-        self.gl.pass("bloom", || {
+        self.declare(targets, shining).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             let first = match (shining.layer, &self.first_of_layer) {
                 (Some(_), Some(program)) => program,

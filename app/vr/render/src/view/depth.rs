@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glam::IVec2;
 
 use yoro::eyes::DepthConvention;
-use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource, Texture};
+use yoro_gl::{Context, Destination, Format, GlError, Program, RasterState, ShaderSource, Texture};
 
 /// How the nearest depth of each pixel's samples gets into a texture. Averages of depth belong to no surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +125,8 @@ impl DepthCopy {
     pub fn run(&self, from: &DepthImage, to: &Destination, convention: DepthConvention) {
         let i = if from.layer.is_some() { 2 } else { usize::from(from.is_pair) };
         let Some(program) = &self.programs[i] else { return };
-        self.gl.pass("depth copy", || {
+        let pass = self.gl.pass("depth copy").read("depth_map", from.texture);
+        pass.write([to.image(Format::Depth32F)]).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
             self.gl.overwrite(to, 0, true);
             let offset =

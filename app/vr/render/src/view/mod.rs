@@ -4,7 +4,6 @@ mod bloom;
 mod carry;
 mod cluster;
 mod coverage;
-mod declared;
 mod depth;
 mod geometry;
 mod layout;
@@ -33,7 +32,6 @@ mod vectors;
 mod vectors_tests;
 
 pub use cluster::Selection;
-pub use declared::{PASSES, Part as TilePart, Pass};
 pub(crate) use depth::DepthProgram;
 pub use depth::{DepthCopy, DepthImage, DepthResolve};
 pub(crate) use layout::{Layout, Seam};

@@ -12,12 +12,15 @@ use super::lights::Lights;
 use super::lit::LitScene;
 use super::renderer::{Develop, Outlines, Renderer, Resolve};
 use super::rectangle::Rectangle;
-use super::scene::{FREE_UNIT, GpuScene};
+use super::scene::{FREE_UNIT, GpuScene, MAP_NAMES};
+use super::settings::SAMPLE_DEPTH;
 use super::shadow::ShadowMap;
 use super::targets::{Onto, Targets};
 use super::uniforms::{nearer, set_view, view_rays};
 use yoro::eyes::{DisparityMap, Eye, View};
-use yoro_gl::{DepthTest, Destination, GlError, Program, RasterState, RenderTarget, Texture};
+use yoro_gl::{
+    DepthTest, Destination, Format, GlError, Image, Pass, Program, RasterState, RenderTarget, Texture,
+};
 
 /// The light in the views of a frame.
 pub struct Illumination<'a> {
@@ -31,8 +34,17 @@ pub struct Illumination<'a> {
 }
 
 impl Illumination<'_> {
+    /// Declares what lit surfaces sample.
+    pub fn declare<'p>(&self, pass: Pass<'p>) -> Pass<'p> {
+        let pass = self.scene.declare(pass, MAP_NAMES.len());
+        match self.shadow {
+            Some(shadow) => shadow.declare(pass),
+            None => pass,
+        }
+    }
+
     /// Sets the uniforms of `include/shade.glsl` in a bound program.
-    fn set(&self, program: &Program) {
+    pub fn set(&self, program: &Program) {
         program.set("exposure", self.exposure);
         if let Some(shadow) = self.shadow {
             shadow.set(program, FREE_UNIT, self.eye);
@@ -91,10 +103,14 @@ impl Renderer {
         from: Option<&Reprojection>,
     ) {
         let view = &views[0];
-        self.gl.pass("surfaces", || {
+        let light = self.illuminate(targets.layout(), scene, views);
+        let mut pass = targets.declare(light.declare(self.gl.pass("surfaces")));
+        if let Some(from) = from {
+            pass = pass.read("dominant_color", from.color).read("depth_map", from.depth);
+        }
+        pass.run(|| {
             targets.bind(targets.layout().texture_size(view.size));
             self.gl.clear(Some(view.depth.clear_value()));
-            let light = self.illuminate(targets.layout(), scene, views);
             let variant = Variant { reprojected: from.is_some(), ..Renderer::variant(targets) };
             self.draw_opaque(variant, &light, views, part, |program| {
                 if let Some(from) = from {
@@ -152,7 +168,7 @@ impl Renderer {
     pub(super) fn draw_transparent(&self, targets: &Targets, scene: &LitScene, views: &[View]) {
         if scene.has_transparent() {
             let light = self.illuminate(targets.layout(), scene, views);
-            self.transparent.run(Renderer::variant(targets), scene, views, |program| light.set(program));
+            self.transparent.run(Renderer::variant(targets), scene, views, &light);
         }
     }
 
@@ -164,12 +180,12 @@ impl Renderer {
         let light = self.illuminate(Layout::Single, scene, views);
         if let Some(near) = near {
             let culler = Culler::selecting(view, near);
-            self.gl.pass("near objects", || {
+            light.declare(self.gl.pass("near objects")).run(|| {
                 self.draw_opaque(variant, &light, views, &Part::Selected(&culler), |_| {});
             });
         }
         if scene.has_transparent() {
-            self.transparent.run(variant, scene, views, |program| light.set(program));
+            self.transparent.run(variant, scene, views, &light);
         }
     }
 
@@ -190,7 +206,7 @@ impl Renderer {
                 if targets.carries()
                     && let Some(carry) = &self.carry
                 {
-                    self.gl.pass("carry", || carry.run());
+                    self.gl.pass("carry").run(|| carry.run());
                 }
                 if let Some(tile) = targets.tile() {
                     tile.discard_depth();
@@ -238,15 +254,22 @@ impl Renderer {
         if targets.carries()
             && let Some(carry) = &self.carry
         {
-            self.gl.pass("carry", || carry.run());
+            self.gl.pass("carry").run(|| carry.run());
         }
-        self.gl.pass("resolve", || {
-            let whole = Destination::whole(&targets.resolved);
-            samples.average(0, to.unwrap_or(&whole));
-            match targets.pair() {
-                Some(pair) if targets.carries() => samples.average(1, &Destination::whole(pair)),
-                _ if depth || ink => samples.copy_depth(&targets.resolved),
-                _ => {}
+        let whole = Destination::whole(&targets.resolved);
+        let to = to.unwrap_or(&whole);
+        let pair = targets.pair().filter(|_| targets.carries());
+        let nearest = match pair {
+            Some(pair) => Some(pair.color(0)),
+            None => (depth || ink).then(|| targets.resolved.depth()),
+        };
+        let pass = self.gl.pass("resolve").in_tile(samples.images());
+        pass.write([to.image(Format::Rgba8)]).write(nearest.map(Texture::image)).run(|| {
+            samples.average(0, to);
+            match pair {
+                Some(pair) => samples.average(1, &Destination::whole(pair)),
+                None if depth || ink => samples.copy_depth(&targets.resolved),
+                None => {}
             }
             samples.discard(true, true);
         });
@@ -258,7 +281,12 @@ impl Renderer {
         let Some((color, depth)) = samples.color().zip(samples.depth()) else { return };
         let variant = Resolve { samples: samples.samples(), ink, depth: true, layer: false };
         let Some((_, program)) = self.resolve.iter().find(|(made, _)| *made == variant) else { return };
-        self.gl.pass("resolve", || {
+        let mut images = samples.images();
+        let mut pass = self.gl.pass("resolve");
+        for (name, image) in ["color_map", "depth_map"].into_iter().zip(&mut images) {
+            pass = pass.read(name, image);
+        }
+        pass.write(to.images()).run(|| {
             self.gl.overwrite(&Destination::whole(to), 1, true);
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
             program.bind().texture_multisample("color_map", 0, color).texture_multisample(
@@ -279,7 +307,8 @@ impl Renderer {
         else {
             return;
         };
-        self.gl.pass("outlines", || {
+        let pass = self.gl.pass("outlines").read("color_map", targets.resolved.color(0));
+        pass.read("depth_map", targets.resolved.depth()).write(inked.images()).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             inked.overwrite();
             program.bind().texture_of("color_map", 0, targets.resolved.color(0)).texture_of(
@@ -382,8 +411,9 @@ impl Renderer {
         let bloom = targets.bloom.as_ref().filter(|_| kind.bloom);
         if depth.is_none() && bloom.is_none() && layer.is_none() {
             let from = [0, 1].map(|i| corner[i] + crop[i]);
-            self.gl.pass("copy", || targets.color().copy_color(from, to));
-            return;
+            let copied = Image { size: to.size, ..targets.color().color(0).image() };
+            let pass = self.gl.pass("copy").read("copied", copied).write([to.image(Format::Rgba8)]);
+            return pass.run(|| targets.color().copy_color(from, to));
         }
         let plain = Develop { layer: layer.is_some(), ..kind };
         let offset = [0, 1].map(|i| (corner[i] + crop[i]) as i32 - to.origin[i] as i32);
@@ -412,7 +442,18 @@ impl Renderer {
             }
             self.gl.draw_screen();
         };
-        self.gl.pass("develop", || {
+        let color = Image { size: to.size, ..targets.color().color(0).image() };
+        let mut pass = self.gl.pass("develop").read("color_map", color).write([to.image(Format::Rgba8)]);
+        if let Some(bloom) = bloom {
+            pass = pass.read("bloom", bloom.result());
+        }
+        if let Some(part) = depth {
+            let image = targets.depth(view.size, eye, crop).texture.image();
+            pass = pass.read("depth_map", Image { size: part.size, ..image });
+            // Tested by what is drawn over it, and lost.
+            pass = pass.in_tile([to.image(SAMPLE_DEPTH)]);
+        }
+        pass.run(|| {
             self.gl.overwrite(to, 1, depth.is_some());
             let Some(part) = depth else { return draw(plain, None, &Rectangle::whole(to.size)) };
             let image = targets.depth(view.size, eye, crop);
@@ -448,11 +489,11 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(depth), None)?;
         let views = std::slice::from_ref(view);
-        self.gl.pass("surfaces", || {
+        let light = self.illuminate(Layout::Single, scene, views);
+        targets.declare(light.declare(self.gl.pass("surfaces"))).run(|| {
             let to = targets.destination(view.size);
             self.load(far, far_view, crop, targets, &to);
             if let Some(slice) = slice {
-                let light = self.illuminate(Layout::Single, scene, views);
                 self.draw_opaque(Renderer::variant(targets), &light, views, &Part::Slice(slice), |_| {});
             }
         });

@@ -12,7 +12,7 @@ use super::rectangle::Rectangle;
 use super::uniforms::eye_to_clip;
 use yoro::eyes::{DepthRange, View};
 use yoro_assets::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
-use yoro_gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
+use yoro_gl::{Context, Filter, Format, GlError, Mesh, Pass, Program, Texture};
 
 /// The features of a material. Each combination that a scene uses is a shader variant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -147,7 +147,7 @@ pub struct GpuScene {
 }
 
 /// The texture units that materials use.
-const MAP_NAMES: [&str; 4] = ["diffuse_map", "specular_map", "emissive_map", "normal_map"];
+pub(super) const MAP_NAMES: [&str; 4] = ["diffuse_map", "specular_map", "emissive_map", "normal_map"];
 /// First texture unit that no material uses.
 pub(super) const FREE_UNIT: u32 = MAP_NAMES.len() as u32;
 
@@ -323,6 +323,17 @@ impl GpuScene {
             let material = &self.materials[batch.material];
             (!material.blended).then(|| (material, batch.moves, &self.clusters[batch.clusters.clone()]))
         })
+    }
+
+    /// Declares that a pass samples the materials' maps: of each kind the first one.
+    pub(super) fn declare<'a>(&self, mut pass: Pass<'a>, kinds: usize) -> Pass<'a> {
+        for (kind, name) in MAP_NAMES.into_iter().enumerate().take(kinds) {
+            let first = self.materials.iter().find_map(|material| self.textures.get(material.maps[kind]?));
+            if let Some(map) = first {
+                pass = pass.read(name, map);
+            }
+        }
+        pass
     }
 
     /// Sets a material's uniforms and maps for the current program.

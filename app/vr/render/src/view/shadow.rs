@@ -8,7 +8,7 @@ use super::cluster::{Culler, Selection};
 use super::scene::{Features, GpuScene};
 use yoro::eyes::Pose;
 use yoro_assets::{Bounds, Viewpoint};
-use yoro_gl::{Blend, Context, DepthTest, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
+use yoro_gl::{Blend, Context, DepthTest, Format, GlError, Pass, Program, RasterState, RenderTarget, ShaderSource};
 
 /// Distance from the viewpoints, in metres, within which a large scene has shadows.
 const REACH: f32 = 60.0;
@@ -74,7 +74,7 @@ impl ShadowMap {
         let [size, _] = self.target.size();
         let (to_clip, extent) = light_box(scene.bounds(), &scene.viewpoints, scene.sky.sun_direction);
         let texel = extent.x.max(extent.y) / size as f32;
-        gl.pass("shadow", || {
+        scene.declare(gl.pass("shadow"), 1).write(self.target.images()).run(|| {
             self.target.bind();
             gl.clear(Some(1.0));
             let culler = Culler::new(Vec3::ZERO, &to_clip, Selection::All);
@@ -103,6 +103,11 @@ impl ShadowMap {
         self.matrix = to_unit * to_clip;
         // Depth bias: the height of one texel on a slope of 45 degrees.
         self.texel = Vec3::new(1.0 / size as f32, texel, texel / extent.z.max(1e-3));
+    }
+
+    /// Declares that a pass samples the map.
+    pub fn declare<'a>(&self, pass: Pass<'a>) -> Pass<'a> {
+        pass.read("shadow_map", self.target.depth())
     }
 
     /// Sets the uniforms of `include/shade.glsl`, for positions relative to `eye`.

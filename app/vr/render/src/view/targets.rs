@@ -8,7 +8,9 @@ use super::layout::Layout;
 use super::settings::{RenderSettings, SAMPLE_DEPTH};
 use crate::stereo::EyeTarget;
 use yoro::eyes::{DepthConvention, Eye, View};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, TileTarget};
+use yoro_gl::{
+    Context, Destination, Filter, Format, GlError, MultisampleTarget, Pass, RenderTarget, Texture, TileTarget,
+};
 
 /// The format of pictures.
 const PICTURE: (Format, Filter) = (Format::Rgba8, Filter::Linear);
@@ -49,6 +51,7 @@ pub struct Targets {
     onto: Onto,
     /// True if the current view carries depth in a second colour.
     carries: bool,
+    needs: Needs,
     /// Average colour and, depending on the way, nearest depth.
     pub resolved: RenderTarget,
     /// The depth of two samples, made when first needed.
@@ -90,6 +93,7 @@ impl Targets {
             tile: tile.transpose()?,
             onto: Onto::Resolved,
             carries: false,
+            needs: Needs::default(),
             resolved: resolved?,
             pair: None,
             inked: None,
@@ -111,7 +115,7 @@ impl Targets {
         to: Option<&EyeTarget>,
     ) -> Result<bool, GlError> {
         let size = view.size;
-        self.detail = detail;
+        (self.detail, self.needs) = (detail, needs);
         self.convention = view.depth.convention;
         let whole = self.layout.texture_size(size);
         self.resolved.resize(whole)?;
@@ -181,6 +185,20 @@ impl Targets {
     pub fn ink_picture(&mut self) -> Result<&RenderTarget, GlError> {
         let size = self.resolved.size();
         picture(&self.gl, &mut self.inked, size)
+    }
+
+    /// Declares what a pass writes that draws a view from its beginning: its average colour, and its depth or samples as far
+    /// as they are needed afterwards.
+    pub fn declare<'a>(&self, pass: Pass<'a>) -> Pass<'a> {
+        let [color, depth] = [self.resolved.color(0), self.resolved.depth()].map(Texture::image);
+        let pair = self.pair.as_ref().filter(|_| self.carries).map(|pair| pair.color(0).image());
+        match (self.onto, &self.multisample) {
+            (Onto::Samples, Some((samples, _))) if self.needs.samples => pass.write(samples.images()),
+            (Onto::Samples, Some((samples, _))) => pass.in_tile(samples.images()),
+            (Onto::Tile, _) => pass.write([color]).write(pair).in_tile([depth]),
+            _ if self.needs.depth => pass.write([color, depth]),
+            _ => pass.write([color]).in_tile([depth]),
+        }
     }
 
     /// Returns which views the targets hold.

@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use super::cluster::{Batch, Culler};
 use super::geometry::{Eyes, Programs, Variant};
+use super::passes::Illumination;
 use super::scene::{Features, GpuScene};
 use super::uniforms::depth_test;
 use yoro::eyes::View;
@@ -57,9 +58,9 @@ impl TransparentPass {
         Ok(())
     }
 
-    /// Draws what is seen in any of the views and hidden by nothing. `light` sets the uniforms of `include/shade.glsl`,
-    /// for positions relative to the first view's.
-    pub fn run(&self, variant: Variant, scene: &GpuScene, views: &[View], light: impl Fn(&Program)) {
+    /// Draws what is seen in any of the views and hidden by nothing, with the light for positions relative to the first
+    /// view's, over what the pass before has drawn.
+    pub fn run(&self, variant: Variant, scene: &GpuScene, views: &[View], light: &Illumination) {
         let (Some((_, programs)), Some(view)) =
             (self.made.iter().find(|(v, _)| *v == variant), views.first())
         else {
@@ -83,7 +84,7 @@ impl TransparentPass {
         }
         back_to_front(&mut order);
         let eyes = Eyes::new(variant.layout, views);
-        self.gl.pass("transparent", || {
+        light.declare(self.gl.pass("transparent")).run(|| {
             if eyes.are_clipped() {
                 self.gl.set_clip_distance(true);
             }
@@ -100,7 +101,7 @@ impl TransparentPass {
                     self.gl.set_raster_state(&RasterState { depth, blend: Blend::Over, cull });
                     self.gl.mask_depth();
                     eyes.set(program.bind());
-                    light(program);
+                    light.set(program);
                     scene.set_material(program, material);
                 }
                 let cluster = &scene.clusters[cluster as usize];

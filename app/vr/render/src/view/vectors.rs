@@ -11,6 +11,7 @@ use super::uniforms::{depth_test, eye_to_clip};
 use yoro::eyes::{Ndc, View};
 use yoro_gl::{
     Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
+    Texture,
 };
 
 /// Writes motion vectors and depth of a view, whose size need not be that of the rendered image: normalized device
@@ -71,7 +72,9 @@ impl VectorPass {
         let Step { view, now, then, .. } = step;
         self.target.resize(view.size)?;
         let gl = &self.gl;
-        gl.pass("moving surfaces", || {
+        let [vectors, depth] = [self.target.color(0), self.target.depth()].map(Texture::image);
+        let pass = scene.declare(gl.pass("moving surfaces"), 1);
+        pass.write([vectors]).in_tile([depth]).run(|| {
             self.target.bind();
             gl.clear(Some(view.depth.clear_value()));
             let culler = Culler::of_view(view);
@@ -118,7 +121,9 @@ impl VectorPass {
             .set("last", signed(step.view.size) - 1)
             .set("reverse", depth.convention != step.view.depth.convention)
             .set("z_scale", if step.ndc == Ndc::ZeroToOne { 0.5f32 } else { 1.0 });
-        self.gl.pass("vectors", || {
+        let pass = self.gl.pass("vectors").read("depth_map", depth.texture);
+        let pass = pass.read("moving_map", self.target.color(0));
+        pass.write([Format::Rgba16F, Format::Depth32F].map(|format| to.image(format))).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
             self.gl.overwrite(to, 1, true);
             self.gl.draw_screen();

@@ -62,7 +62,7 @@ impl Mask {
         if !self.hides() {
             return;
         }
-        self.gl.pass("visibility mask", || {
+        self.gl.pass("visibility mask").run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             for eye in Eye::BOTH {
                 let (Some(mesh), f) = (&self.meshes[eye.index()], &frusta[eye.index()]) else { continue };

@@ -112,7 +112,7 @@ impl Storage {
             set_encoding(&self.gl, true);
             return;
         };
-        self.gl.pass("transfer", || {
+        self.gl.pass("transfer").run(|| {
             // Synthesis turns encoding off.
             if has_control(&self.gl) {
                 set_encoding(&self.gl, true);

@@ -74,7 +74,7 @@ impl Show {
         to: &Destination,
         columns: Range<u32>,
     ) {
-        self.gl.pass("show", || {
+        self.gl.pass("show").run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             let origin = [to.origin[0] + columns.start, to.origin[1]];
             self.gl.bind_framebuffer(to.framebuffer, origin, [columns.end - columns.start, to.size[1]]);
@@ -149,7 +149,7 @@ impl Show {
     /// Draws an image with its depth into the framebuffer that is bound, which this library did not create.
     pub fn with_depth(&self, image: &Texture, depth: &Texture, origin: [u32; 2], size: [u32; 2]) {
         let to = Destination { framebuffer: None, origin, size };
-        self.gl.pass("show", || {
+        self.gl.pass("show").run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
             self.draw(&self.with_depth, image, Some(("depth_map", depth)), &to);
             self.gl.set_raster_state(&RasterState::SCREEN);

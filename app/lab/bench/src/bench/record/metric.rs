@@ -72,9 +72,6 @@ pub const FLICKERS: [&str; 4] = [FLICKER, FLICKER_HOLES, FLICKER_EDGES, FLICKER_
 /// The corresponding metrics of the ground truth, measured for `conventional`.
 pub const CHANGES: [&str; 4] = [CHANGE, CHANGE_HOLES, CHANGE_EDGES, CHANGE_REST];
 
-/// PSNR (RGB) in dB in the columns at the other eye's outer border that a guard band serves.
-pub const BORDER_PSNR: &str = "border_psnr";
-
 /// Pixels that are rendered, of those of two full eyes.
 pub const SHADED: &str = "shaded";
 /// PSNR (RGB) in dB and SSIM (gaussian, RGB) within 20 degrees of the axis, against a full render.

@@ -130,7 +130,7 @@ fn over(setting: &SettingData, name: &str, base: &str) -> Option<f64> {
 }
 
 /// Returns the means over all scenes at one field of view.
-fn means(suite: &SuiteDataData, label: &str) -> Table {
+fn means(suite: &SuiteData, label: &str) -> Table {
     let columns = [
         "<levels",
         "time over two full renders",
@@ -174,7 +174,7 @@ fn means(suite: &SuiteDataData, label: &str) -> Table {
 }
 
 /// Returns the times of each scene over two full renders at one field of view.
-fn by_scene(suite: &SuiteDataData, label: &str) -> Table {
+fn by_scene(suite: &SuiteData, label: &str) -> Table {
     let scenes: Vec<&SettingData> = suite.labelled(label).collect();
     let names: Vec<&str> = scenes.iter().map(|setting| setting.conditions.scene.as_str()).collect();
     let mut table = table_of(&format!("Frame time over two full renders at {label}"), &["<levels"], &names);

@@ -5,7 +5,6 @@ mod complexity;
 mod distance;
 mod flicker;
 mod foveation;
-mod guard_band;
 mod half_rate;
 mod imbuffer;
 mod ipd;
@@ -20,7 +19,7 @@ mod styles;
 use super::Experiment;
 
 /// All experiments, in the order in which `all` runs them.
-pub const EXPERIMENTS: [&dyn Experiment; 16] = [
+pub const EXPERIMENTS: [&dyn Experiment; 15] = [
     &scenes::Scenes,
     &complexity::Complexity,
     &styles::Styles,
@@ -32,7 +31,6 @@ pub const EXPERIMENTS: [&dyn Experiment; 16] = [
     &resolution::Resolution,
     &anti_aliasing::AntiAliasing,
     &flicker::Flicker,
-    &guard_band::GuardBands,
     &reprojection::Reprojection,
     &half_rate::HalfRate,
     &foveation::Foveated,
