@@ -1,18 +1,10 @@
 //! `cargo xtask maintain`: the commands that only maintainers run, and the programs that tests use.
 
-<<<<<<< HEAD
 pub mod estimate;
 pub(crate) mod godot;
 pub(crate) mod hello_xr;
 pub mod monado;
 mod renew;
-=======
-pub(crate) mod godot;
-pub(crate) mod hello_xr;
-pub mod monado;
-mod renew;
-pub mod shader_cost;
->>>>>>> h/xtask
 
 use clap::Subcommand;
 
@@ -20,7 +12,6 @@ use crate::console;
 
 #[derive(Subcommand)]
 pub(crate) enum Task {
-<<<<<<< HEAD
     /// Estimate what whole stereo frames cost on mobile GPUs that are not here: slots and bytes, from frames counted here
     /// and shaders compiled by Mesa
     Estimate {
@@ -33,32 +24,14 @@ pub(crate) enum Task {
         gpus: Vec<estimate::Gpu>,
         /// --shaders: renew xtask/helpers/estimate/shader-cost.csv
         #[arg(long, requires = "shaders")]
-=======
-    /// Renew everything that is generated: shaders for Vulkan, wgpu and three.js, the C library's header, the table of
-    /// settings, and the costs of shaders
-    Renew,
-    /// Print the cost of the shader programs on mobile GPUs, by Mesa's compilers: instructions, registers, waves,
-    /// fetches, spills
-    ShaderCost {
-        /// Only programs whose names contain this
-        filter: Option<String>,
-        /// These GPUs instead of those of app/lab/estimate/shader-cost.csv
-        #[arg(long = "gpu", value_name = "NAME", value_delimiter = ',')]
-        gpus: Vec<shader_cost::Gpu>,
-        /// Renew app/lab/estimate/shader-cost.csv
-        #[arg(long)]
->>>>>>> h/xtask
         bless: bool,
         /// Scenes, --width, --height, --viewpoints, --fov-y-degrees: see `cargo xtask maintain estimate -- --help`
         #[arg(last = true, conflicts_with = "shaders")]
         frames: Vec<String>,
     },
-<<<<<<< HEAD
     /// Renew everything that is generated: shaders for Vulkan, wgpu and three.js, the C library's header, the table of
     /// settings, and the costs of shaders
     Renew,
-=======
->>>>>>> h/xtask
     /// Set up Monado, an OpenXR runtime with a simulated headset, below target/, and print how to use it
     Monado,
     /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
@@ -70,7 +43,6 @@ pub(crate) enum Task {
 /// Runs a task. Returns false if a shader has a fault.
 pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
     let (text, passed) = match task {
-<<<<<<< HEAD
         Task::Estimate { shaders: Some(filter), gpus, bless, .. } => {
             let compilers = estimate::Compilers::make()?;
             let filter = Some(filter).filter(|filter| !filter.is_empty());
@@ -78,14 +50,6 @@ pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
         }
         Task::Estimate { frames, .. } => (estimate::frames(&frames)?, true),
         Task::Renew => renew::renew()?,
-=======
-        Task::Renew => renew::renew()?,
-        Task::ShaderCost { filter, gpus, bless } => {
-            let compilers = shader_cost::Compilers::make()?;
-            let options = shader_cost::Options { filter, gpus, bless };
-            shader_cost::report(&options, &compilers, shader_cost::programs()?)?
-        }
->>>>>>> h/xtask
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
         Task::Godot => (godot::usage()?, true),

@@ -550,17 +550,3 @@ fn the_kits_shaders_for_godot_compile() {
         println!("SKIPPED: {COMPILER} is not here");
     }
 }
-<<<<<<< HEAD
-=======
-
-/// `cargo xtask maintain renew` renews it.
-#[test]
-fn the_module_for_three_is_made_of_the_present_shaders() {
-    let kit = tempfile::tempdir().unwrap();
-    kit::write(kit.path()).unwrap();
-    let made = std::fs::read_to_string(kit.path().join("three/shaders.js")).unwrap();
-    let package = package().join("../three/src/shaders.js");
-    let committed = std::fs::read_to_string(&package).unwrap_or_default();
-    assert!(made == committed, "{} is not of these shaders: cargo xtask maintain renew", package.display());
-}
->>>>>>> h/xtask

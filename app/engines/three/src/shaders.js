@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 // yoro 0.1.0, synthesis passes, written from its GLSL by `cargo xtask maintain renew`. Do not edit.
-=======
-// yoro 0.1.0, synthesis passes, written from its GLSL by `cargo xtask maintain renew`. Do not edit.
->>>>>>> h/xtask
 // SPDX-License-Identifier: MIT OR Apache-2.0
 export const precisions = 'precision highp float;precision highp int;precision highp sampler2D;precision highp usampler2D;';
 export const screenVertex = /* glsl */`${precisions}

@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 //! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo xtask maintain renew`.
-=======
-//! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo xtask maintain renew`.
->>>>>>> h/xtask
 
 use yoro::synthesis::backend::{PerKind, WarpKind};
 

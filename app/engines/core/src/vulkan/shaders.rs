@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 //! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain renew`.
-=======
-//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain renew`.
->>>>>>> h/xtask
 
 use crate::synthesis::backend::{PerKind, WarpKind};
 
@@ -81,11 +77,7 @@ mod tests {
             folder: Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv"),
             ending: "spv",
             compiler: compiled::glslang(&ARGUMENTS),
-<<<<<<< HEAD
             command: "cargo xtask maintain renew",
-=======
-            command: "cargo xtask maintain renew",
->>>>>>> h/xtask
             compile: |source: &Source| compiled::spirv(source, &ARGUMENTS),
         };
         let sources = MODULES.each_ref().map(source);

@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 // Made of yoro's GLSL by `cargo xtask maintain renew`.
-=======
-// Made of yoro's GLSL by `cargo xtask maintain renew`.
->>>>>>> h/xtask
 struct Segment {
     steep: bool,
     sense: f32,

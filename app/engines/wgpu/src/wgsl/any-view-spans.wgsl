@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 // Made of yoro's GLSL by `cargo xtask maintain renew`.
-=======
-// Made of yoro's GLSL by `cargo xtask maintain renew`.
->>>>>>> h/xtask
 struct AnyView {
     source_size: vec2<i32>,
     target_origin: vec2<i32>,

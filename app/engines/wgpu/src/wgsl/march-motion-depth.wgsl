@@ -1,13 +1,9 @@
-<<<<<<< HEAD
 // Made of yoro's GLSL by `cargo xtask maintain renew`.
 struct Edge {
     x: f32,
     depth: f32,
 }
 
-=======
-// Made of yoro's GLSL by `cargo xtask maintain renew`.
->>>>>>> h/xtask
 struct Search {
     x: f32,
     depths: vec2<f32>,

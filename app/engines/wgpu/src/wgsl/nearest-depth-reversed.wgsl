@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 // Made of yoro's GLSL by `cargo xtask maintain renew`.
-=======
-// Made of yoro's GLSL by `cargo xtask maintain renew`.
->>>>>>> h/xtask
 var<private> gl_FragCoord_1: vec4<f32>;
 @group(0) @binding(0) 
 var sample_depths_texture: texture_multisampled_2d<f32>;

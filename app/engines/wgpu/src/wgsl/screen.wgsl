@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 // Made of yoro's GLSL by `cargo xtask maintain renew`.
-=======
-// Made of yoro's GLSL by `cargo xtask maintain renew`.
->>>>>>> h/xtask
 struct gl_PerVertex {
     @builtin(position) gl_Position: vec4<f32>,
     gl_PointSize: f32,
