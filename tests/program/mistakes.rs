@@ -214,8 +214,8 @@ fn numbers_have_a_remedy() {
         ("device farm husky --scenarios 4", "give a whole number from 1 to 3"),
         ("study plan --participants none", "give a whole number from 1 to 1000"),
     ] {
-        let told = run(dir.path(), line);
-        assert!(told.code == Some(2) && told.stderr.contains(remedy), "{line}: {}", told.stderr);
+        let output = run(dir.path(), line);
+        assert!(output.code == Some(2) && output.stderr.contains(remedy), "{line}: {}", output.stderr);
     }
 }
 

@@ -108,8 +108,8 @@ fn alpha_is_drawn_as_the_file_says() {
     // From behind, what is cut out of one side is not there.
     write(dir.path(), "behind", &json!([material("MASK", 0.5, 1.0)]), &[(0, [0., 0., -2.], 1.0)]);
     let line = "render behind.gltf --position 0,0,-4 --target 0,0,-2 --size 64 --outputs left";
-    let told = succeed(dir.path(), line).stderr;
-    assert!(told.contains("1 of 1 frames of behind show nothing"), "{told}");
+    let output = succeed(dir.path(), line).stderr;
+    assert!(output.contains("1 of 1 frames of behind show nothing"), "{output}");
 }
 
 #[test]
@@ -131,15 +131,18 @@ fn instances_are_drawn() {
     for x in [14, 47, 80] {
         assert_eq!(image.get_pixel(x, 48).0, [255, 0, 0], "column {x}");
     }
-    let told = succeed(dir.path(), "render many.gltf --size 64 --outputs left").stderr;
-    assert!(told.contains("is left out: VENDOR_unknown") && !told.contains("instancing"), "{told}");
-    assert!(told.contains("many: 8 viewpoints are made up; write others into many.camera.json"), "{told}");
-    // One line about what is left out comes before.
-    let told = run(dir.path(), "render many.gltf --animation walk");
+    let output = succeed(dir.path(), "render many.gltf --size 64 --outputs left").stderr;
+    assert!(output.contains("is left out: VENDOR_unknown") && !output.contains("instancing"), "{output}");
     assert!(
-        told.code == Some(2) && told.stderr.contains("no animation walk: it has none"),
+        output.contains("many: 8 viewpoints are made up; write others into many.camera.json"),
+        "{output}"
+    );
+    // One line about what is left out comes before.
+    let output = run(dir.path(), "render many.gltf --animation walk");
+    assert!(
+        output.code == Some(2) && output.stderr.contains("no animation walk: it has none"),
         "{}",
-        told.stderr
+        output.stderr
     );
     run(dir.path(), "render prototype --animation walk").refuses(&["prototype is a built-in scene"]);
 }
@@ -157,21 +160,22 @@ fn a_view_of_nothing_has_its_reason() {
     succeed(dir.path(), "run glass.gltf --size 64 --viewpoints 1 --pipelines gather");
     write(dir.path(), "far", &json!([unlit([1., 0., 0., 1.], "OPAQUE")]), &[(0, [0., 0., -2.], 100.0)]);
     camera("far", 1600);
-    let told = run(dir.path(), "run far.gltf --size 64 --viewpoints 1 --pipelines gather");
+    let output = run(dir.path(), "run far.gltf --size 64 --viewpoints 1 --pipelines gather");
     let refused = ["viewpoint 0 of far", "the far plane of 1000 m", "--far 2000"];
     assert!(
-        told.code == Some(2) && refused.iter().all(|words| told.stderr.contains(words)),
+        output.code == Some(2) && refused.iter().all(|words| output.stderr.contains(words)),
         "{}",
-        told.stderr
+        output.stderr
     );
     // A model of 200 units is probably one in centimetres.
     assert!(
-        told.stderr.contains("far.gltf is 200 m large") && told.stderr.contains("0.01"),
+        output.stderr.contains("far.gltf is 200 m large") && output.stderr.contains("0.01"),
         "{}",
-        told.stderr
+        output.stderr
     );
     fs::write(dir.path().join("far.scene.json"), r#"{"scale": 1}"#).unwrap();
     assert_eq!(succeed(dir.path(), "render far.gltf --size 64 --far 2000 --outputs left").stderr, "");
-    let told = succeed(dir.path(), "render far.gltf --size 64 --far 9000 --near 2000 --outputs left").stderr;
-    assert!(told.contains("the near plane of 2000 m") && told.contains("--near 0."), "{told}");
+    let output =
+        succeed(dir.path(), "render far.gltf --size 64 --far 9000 --near 2000 --outputs left").stderr;
+    assert!(output.contains("the near plane of 2000 m") && output.contains("--near 0."), "{output}");
 }

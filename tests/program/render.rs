@@ -138,10 +138,10 @@ fn features_left_out_of_a_gltf_file_are_reported() {
             {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
             {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC3"}]}"#;
     fs::write(dir.path().join("a.gltf"), text).unwrap();
-    let told = succeed(dir.path(), "render a.gltf --size 64 --outputs left").stderr;
+    let output = succeed(dir.path(), "render a.gltf --size 64 --outputs left").stderr;
     for words in ["clamps or mirrors", "colours of vertices"] {
-        let lines: Vec<_> = told.lines().filter(|line| line.contains(words)).collect();
-        assert!(lines.len() == 1 && lines[0].contains("paint"), "{told}");
+        let lines: Vec<_> = output.lines().filter(|line| line.contains(words)).collect();
+        assert!(lines.len() == 1 && lines[0].contains("paint"), "{output}");
     }
 }
 

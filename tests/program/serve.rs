@@ -132,7 +132,7 @@ fn next(socket: &mut Socket) -> Option<Vec<u8>> {
 }
 
 #[test]
-fn only_what_browsers_send_is_served_and_silent_clients_make_room() {
+fn only_what_browsers_send_is_served_beside_silent_clients() {
     let dir = tempfile::tempdir().unwrap();
     let serving = Serving::start(dir.path(), "prototype");
     let host = &serving.host;
@@ -158,7 +158,6 @@ fn only_what_browsers_send_is_served_and_silent_clients_make_room() {
         assert!(said.starts_with(&wanted), "{first} {:.80}: {said}", headers);
     }
 
-    // As many as may wait from one address.
     let silent: Vec<_> = (0..16).map(|_| TcpStream::connect(host).unwrap()).collect();
     let (mut socket, answer) = serving.connect();
     assert!(matches!(FromServer::read(&answer), Some(FromServer::Welcome(_))));

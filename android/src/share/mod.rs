@@ -46,8 +46,8 @@ pub struct Reading {
     outcome: Receiver<Result<Shared, String>>,
     /// The number of bytes read so far. The thread gives up once this is dropped.
     bytes: Arc<AtomicU64>,
-    /// The number of megabytes that the user was last told.
-    told: Option<u64>,
+    /// The number of megabytes that the user has last seen.
+    shown_megabytes: Option<u64>,
 }
 
 impl Reading {
@@ -73,7 +73,7 @@ impl Reading {
         if let Err(error) = thread::Builder::new().name("yoro-shared".into()).spawn(work) {
             log::warn!("no thread for what was shared: {error}");
         }
-        Reading { outcome, bytes, told: None }
+        Reading { outcome, bytes, shown_megabytes: None }
     }
 
     /// Returns what was shared once it is read, or why it cannot be used.
@@ -88,7 +88,7 @@ impl Reading {
     /// Returns a sentence about the progress; `None` if it has not changed.
     pub fn news(&mut self) -> Option<String> {
         let megabytes = self.bytes.load(Ordering::Relaxed) >> 20;
-        if self.told.replace(megabytes) == Some(megabytes) {
+        if self.shown_megabytes.replace(megabytes) == Some(megabytes) {
             return None;
         }
         Some(match megabytes {

@@ -5,9 +5,6 @@ use std::ffi::{c_int, c_void};
 use crate::bionic::thread_name;
 use crate::host::{fatal, host};
 
-/// Size in bytes of the part of the stack in which callers are searched.
-const STACK: usize = 64 * 1024;
-
 /// From now on, catches signals of crashes and panics of the host.
 pub fn install() {
     std::panic::set_hook(Box::new(|panic| fatal(format!("the host itself panicked: {panic}"))));
@@ -28,7 +25,7 @@ extern "C" fn crashed(signal: c_int, information: *mut libc::siginfo_t, context:
     // SAFETY: takes a number. The default action of SIGALRM ends the process.
     unsafe { libc::alarm(10) };
     // SAFETY: the kernel passes both pointers to a handler installed with SA_SIGINFO.
-    let (address, (counter, stack)) = unsafe { ((*information).si_addr() as usize, registers(context)) };
+    let (address, counter) = unsafe { ((*information).si_addr() as usize, program_counter(context)) };
     let name = match signal {
         libc::SIGSEGV => "SIGSEGV",
         libc::SIGBUS => "SIGBUS",
@@ -36,15 +33,13 @@ extern "C" fn crashed(signal: c_int, information: *mut libc::siginfo_t, context:
         libc::SIGFPE => "SIGFPE",
         _ => "SIGABRT",
     };
-    let callers: Vec<_> = words(stack).into_iter().filter_map(in_library).take(12).collect();
     fatal(format!(
-        "{name} at address {address:#x} in thread {}, {}; the stack has the addresses {}",
+        "{name} at address {address:#x} in thread {}, {}",
         thread_name(),
         in_library(counter).map_or_else(
             || format!("outside of the package's libraries (pc {counter:#x})"),
             |offset| format!("at {offset}")
-        ),
-        callers.join(" ")
+        )
     ))
 }
 
@@ -55,27 +50,15 @@ fn in_library(address: usize) -> Option<String> {
     Some(format!("{file}+{:#x}", address - library.base()))
 }
 
-/// Returns the program counter and the stack pointer.
+/// Returns the program counter.
 ///
 /// # Safety
 /// `context` must be the third argument of a signal handler.
-unsafe fn registers(context: *mut c_void) -> (usize, usize) {
+unsafe fn program_counter(context: *mut c_void) -> usize {
     // SAFETY: the kernel passes a context of this type to signal handlers.
     let context = unsafe { &(*context.cast::<libc::ucontext_t>()).uc_mcontext };
     #[cfg(target_arch = "x86_64")]
-    return (context.gregs[libc::REG_RIP as usize] as usize, context.gregs[libc::REG_RSP as usize] as usize);
+    return context.gregs[libc::REG_RIP as usize] as usize;
     #[cfg(target_arch = "aarch64")]
-    return (context.pc as usize, context.sp as usize);
-}
-
-/// Returns the words of the stack from `start` on, as far as they are readable.
-fn words(start: usize) -> Vec<usize> {
-    let mut words = vec![0_usize; STACK / 8];
-    let local = libc::iovec { iov_base: words.as_mut_ptr().cast(), iov_len: STACK };
-    let remote = libc::iovec { iov_base: start as *mut c_void, iov_len: STACK };
-    // SAFETY: reads this process's own memory into a live vector. Unmapped pages are skipped.
-    let read =
-        unsafe { libc::process_vm_readv(libc::getpid(), &raw const local, 1, &raw const remote, 1, 0) };
-    words.truncate(usize::try_from(read).unwrap_or(0) / 8);
-    words
+    return context.pc as usize;
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::os::fd::{AsRawFd, OwnedFd};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::sync::{Mutex, MutexGuard, OnceLock};
 use std::time::{Duration, Instant};
 
@@ -19,7 +19,7 @@ use crate::graphics::Graphics;
 use crate::jni::Jni;
 use crate::library::Library;
 use crate::script::{Battery, Device, Script, Share, Thermal};
-use crate::summary::{InputFacts, LABEL, LibraryFacts, Mark, Summary};
+use crate::summary::{InputFacts, LABEL, Mark, Summary};
 use crate::threads::{self, Progress};
 
 /// The simulated device: everything that the application can query.
@@ -74,30 +74,23 @@ pub struct Host {
 
 /// Facts for the summary, in addition to the live state.
 pub struct Report {
-    /// The path of the APK.
-    pub apk: PathBuf,
     /// The script's name.
     pub script: String,
     /// The path of the summary.
     pub out: PathBuf,
-    /// Facts of the libraries.
-    pub libraries: Vec<LibraryFacts>,
+    /// The paths of the libraries in the APK.
+    pub libraries: Vec<String>,
     /// Imported symbols that are traps.
     pub trapped_symbols: Vec<String>,
     /// The marks so far.
     pub marks: Vec<Mark>,
-    /// The pictures so far.
-    pub captures: Vec<PathBuf>,
     /// The real standard error, since the library redirects its own.
     pub stderr: OwnedFd,
-    /// Start of the run.
-    pub started: Instant,
 }
 
 struct Watch {
     timeout: Duration,
     doing: Mutex<Option<(String, Progress)>>,
-    longest_callback_us: AtomicU64,
 }
 
 static HOST: OnceLock<Host> = OnceLock::new();
@@ -158,7 +151,6 @@ impl Host {
             watch: Watch {
                 timeout: Duration::from_secs_f64(script.patience_seconds),
                 doing: Mutex::new(None),
-                longest_callback_us: AtomicU64::new(0),
             },
             device,
         };
@@ -224,14 +216,6 @@ impl Host {
         result
     }
 
-    /// Runs a callback on the activity's main thread, with the same time limit as [`Host::watched`].
-    pub fn callback<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
-        let started = Instant::now();
-        let result = self.watched(what, run);
-        self.watch.longest_callback_us.fetch_max(started.elapsed().as_micros() as u64, Ordering::Relaxed);
-        result
-    }
-
     /// Returns the resources currently in use.
     pub fn mark(&self, name: &str) -> Mark {
         Mark {
@@ -257,21 +241,17 @@ impl Host {
     /// Returns the summary so far.
     pub fn summary(&self, failure: Option<String>) -> Summary {
         let end = self.mark("end");
-        let log = self.log.collected();
         let report = self.report();
         let mut marks = report.marks.clone();
         marks.push(end);
         Summary {
             host: LABEL.to_owned(),
             script: report.script.clone(),
-            apk: report.apk.clone(),
             abi: ABI.to_owned(),
             libraries: report.libraries.clone(),
             failure,
             frames: self.frames.shown(),
             seconds: self.clock.seconds(),
-            real_seconds: report.started.elapsed().as_secs_f64(),
-            longest_callback_ms: self.watch.longest_callback_us.load(Ordering::Relaxed) as f64 / 1000.0,
             gl: self.graphics.facts(),
             marks,
             input: InputFacts {
@@ -283,9 +263,7 @@ impl Host {
             jni_invented: self.jni.invented(),
             requests: lock(&self.requests).clone(),
             trapped_symbols: report.trapped_symbols.clone(),
-            captures: report.captures.clone(),
-            log_counts: log.counts,
-            log: log.lines,
+            log: self.log.lines(),
         }
     }
 

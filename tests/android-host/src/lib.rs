@@ -32,7 +32,6 @@ mod thunk;
 
 use std::os::fd::AsFd;
 use std::path::Path;
-use std::time::Instant;
 
 use anyhow::{Context, Result};
 
@@ -50,22 +49,18 @@ use crate::script::Script;
 /// # Errors
 /// Fails if the APK, the library or the output folder cannot be used, or Mesa is missing.
 pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Result<std::convert::Infallible> {
-    let started = Instant::now();
     std::fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
     let apk = Apk::read(apk_path, ABI)?;
     let headset = script.device.openxr.as_ref();
     let layer = headset.and_then(|headset| headset.layer.as_deref());
     let layer = layer.map(|path| Apk::read_aar(path, ABI)).transpose()?;
     let report = Report {
-        apk: apk_path.to_owned(),
         script: script.name.clone(),
         out: out.to_owned(),
         libraries: Vec::new(),
         trapped_symbols: Vec::new(),
         marks: Vec::new(),
-        captures: Vec::new(),
         stderr: std::io::stderr().as_fd().try_clone_to_owned()?,
-        started,
     };
     if let Some(headset) = headset {
         // SAFETY: the process has a single thread.
@@ -76,7 +71,7 @@ pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Resul
     let load = |(name, bytes): &(String, Vec<u8>)| -> Result<Library> {
         let loaded = Library::load(name, bytes, |library, symbol| exports::find(library, symbol, sdk))?;
         let mut report = host.report();
-        report.libraries.push(loaded.facts);
+        report.libraries.push(name.clone());
         report.trapped_symbols.extend(loaded.trapped);
         Ok(loaded.library)
     };

@@ -11,7 +11,6 @@ use goblin::elf::program_header::{PF_R, PF_W, PF_X};
 
 use crate::elf::{Image, PAGE, machine, pages};
 use crate::exports::System;
-use crate::summary::LibraryFacts;
 use crate::thunk;
 
 /// A loaded library.
@@ -30,8 +29,6 @@ pub struct Library {
 pub struct Loaded {
     /// The library.
     pub library: Library,
-    /// Facts for the summary.
-    pub facts: LibraryFacts,
     /// The imported symbols without a definition. Calling one ends the run with its name.
     pub trapped: Vec<String>,
 }
@@ -57,16 +54,6 @@ impl Library {
         relocate(&image, base, &values).with_context(|| format!("{name} cannot be linked"))?;
         let init = constructors(&image, base)?;
         protect(&image, base)?;
-        let imports =
-            image.symbols.iter().filter(|symbol| symbol.defined.is_none() && !symbol.name.is_empty());
-        let facts = LibraryFacts {
-            name: name.to_owned(),
-            size: file.len() as u64,
-            needed: image.needed().iter().map(|library| (*library).to_owned()).collect(),
-            symbols: imports.count() - trapped.len(),
-            relocations: image.relocations.len(),
-            alignment: image.loads().map(|segment| segment.p_align).min().unwrap_or(0),
-        };
         let exports = image.symbols.iter();
         let exports = exports.filter_map(|it| Some((it.name.to_owned(), base + it.defined? as usize)));
         let code = image.loads().filter(|segment| segment.p_flags & PF_X != 0).map(|segment| {
@@ -82,7 +69,7 @@ impl Library {
             code: code.collect(),
             init,
         };
-        Ok(Loaded { library, facts, trapped })
+        Ok(Loaded { library, trapped })
     }
 
     /// Runs the constructors.

@@ -219,7 +219,7 @@ impl Player {
             fatal(format!("the script asks for {what} without an activity"))
         };
         host.frames.set_open(true);
-        let result = host.callback(what, || call(activity));
+        let result = host.watched(what, || call(activity));
         host.frames.set_open(false);
         self.looper.pump(0, -1);
         result
@@ -506,9 +506,8 @@ impl Player {
             Some(Err(error)) => Err(error),
             None => Err("there is none".into()),
         };
-        match saved {
-            Ok(()) => self.host.report().captures.push(path),
-            Err(error) => fatal(format!("the picture {} cannot be written: {error}", path.display())),
+        if let Err(error) = saved {
+            fatal(format!("the picture {} cannot be written: {error}", path.display()));
         }
     }
 

@@ -458,8 +458,6 @@ pub struct Share {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Key {
-    /// KEYCODE_BACK.
-    Back,
     /// KEYCODE_VOLUME_UP.
     VolumeUp,
     /// KEYCODE_VOLUME_DOWN.
@@ -480,7 +478,6 @@ impl Key {
     /// Returns the `AKEYCODE_*` constant.
     pub fn code(self) -> i32 {
         match self {
-            Self::Back => 4,
             Self::VolumeUp => 24,
             Self::VolumeDown => 25,
             Self::Headset => 79,

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
@@ -16,22 +15,16 @@ pub struct Summary {
     pub host: String,
     /// The script's name.
     pub script: String,
-    /// The path of the APK.
-    pub apk: PathBuf,
     /// The ABI: `x86_64` or `arm64-v8a`.
     pub abi: String,
-    /// The application's library as loaded, followed by that of an API layer.
-    pub libraries: Vec<LibraryFacts>,
+    /// The path in the APK of the application's library, followed by that of an API layer's.
+    pub libraries: Vec<String>,
     /// The reason why the run ended early. `None` if the script was played to its end.
     pub failure: Option<String>,
     /// Number of frames shown.
     pub frames: u64,
     /// Duration in virtual seconds.
     pub seconds: f64,
-    /// Duration in real seconds. It depends on this machine and its CPU rasterizer, and does not apply to a phone.
-    pub real_seconds: f64,
-    /// Duration of the longest callback on the main thread, in real milliseconds.
-    pub longest_callback_ms: f64,
     /// Facts about OpenGL ES.
     pub gl: GlFacts,
     /// Resources in use at the marks. The last mark is the end of the run.
@@ -46,29 +39,8 @@ pub struct Summary {
     pub requests: BTreeMap<String, u64>,
     /// Symbols that the libraries import and that are traps.
     pub trapped_symbols: Vec<String>,
-    /// Files written by `capture` steps.
-    pub captures: Vec<PathBuf>,
-    /// Number of lines per tag, counting errors separately.
-    pub log_counts: BTreeMap<String, u64>,
     /// Lines with the tags `YORO` (the application) and `yoro` (the API layer), and all of priority error and above.
     pub log: Vec<LogLine>,
-}
-
-/// A library in the APK.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct LibraryFacts {
-    /// The path in the APK.
-    pub name: String,
-    /// Size in bytes.
-    pub size: u64,
-    /// The libraries that it needs.
-    pub needed: Vec<String>,
-    /// Number of imported symbols that were bound.
-    pub symbols: usize,
-    /// Number of applied relocations.
-    pub relocations: usize,
-    /// Smallest alignment of a LOAD segment in bytes.
-    pub alignment: u64,
 }
 
 /// Facts about OpenGL ES.
@@ -177,55 +149,12 @@ impl Summary {
     }
 }
 
+/// What went wrong; everything else is in the JSON.
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{LABEL}: {} ({}, {})", self.script, self.apk.display(), self.abi)?;
-        for library in &self.libraries {
-            writeln!(
-                f,
-                "  library   {}: {} KiB, {} symbols, {} relocations, aligned to {} KiB, needs {}",
-                library.name,
-                library.size / 1024,
-                library.symbols,
-                library.relocations,
-                library.alignment / 1024,
-                library.needed.join(" ")
-            )?;
-        }
-        writeln!(
-            f,
-            "  frames    {} in {:.2} virtual seconds ({:.1} s here)",
-            self.frames, self.seconds, self.real_seconds
-        )?;
-        writeln!(
-            f,
-            "  GL        {} on {}, {} contexts, {} errors",
-            self.gl.version, self.gl.renderer, self.gl.contexts, self.gl.error_count
-        )?;
+        writeln!(f, "{LABEL}: {} ({}), {} frames", self.script, self.abi, self.frames)?;
         for error in &self.gl.errors {
-            writeln!(f, "            {error}")?;
-        }
-        writeln!(
-            f,
-            "  input     {} sent, {} finished, {} handled",
-            self.input.sent, self.input.finished, self.input.handled
-        )?;
-        writeln!(f, "  callbacks longest {:.1} ms here", self.longest_callback_ms)?;
-        for mark in &self.marks {
-            writeln!(
-                f,
-                "  at {:<6} frame {}: {}, {} MiB",
-                mark.name,
-                mark.frames,
-                mark.objects(),
-                mark.resident_kib / 1024
-            )?;
-        }
-        for path in &self.captures {
-            writeln!(f, "  picture   {}", path.display())?;
-        }
-        if !self.trapped_symbols.is_empty() {
-            writeln!(f, "  traps     {}", self.trapped_symbols.join(" "))?;
+            writeln!(f, "  GL        {error}")?;
         }
         for (call, times) in &self.jni_invented {
             writeln!(f, "  invented  {call} ({times}x)")?;

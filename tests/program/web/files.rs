@@ -195,9 +195,9 @@ fn dropped_files_are_shown_or_refused() {
             "document.getElementById('picture-metres-at-white').value = {value}; \
              document.getElementById('picture-options').dispatchEvent(new Event('change')); 0"
         ));
-        let told = page.message();
-        assert_eq!(told.is_some(), part.is_some(), "{value}");
-        assert!(told.is_none_or(|told| told.starts_with(part.unwrap())), "{value}");
+        let output = page.message();
+        assert_eq!(output.is_some(), part.is_some(), "{value}");
+        assert!(output.is_none_or(|output| output.starts_with(part.unwrap())), "{value}");
     }
     let hidden = "['near', 'far', 'disparity-scale'].every((key) => document.getElementById(`picture-${key}`).labels[0].hidden)";
     assert_eq!(page.evaluate(hidden), json!(true), "fields that distances have no use for");
@@ -232,8 +232,8 @@ fn dropped_files_are_shown_or_refused() {
     ];
     for (files, part) in broken {
         page.drop_files(files);
-        let told = page.message().unwrap_or_default();
-        assert!(told.contains(part) && told.ends_with('.'), "{part}: {told}");
+        let output = page.message().unwrap_or_default();
+        assert!(output.contains(part) && output.ends_with('.'), "{part}: {output}");
         assert_eq!(page.evaluate("Boolean(yoro.source.color)"), json!(true), "{part}: the pictures stay");
     }
 

@@ -82,13 +82,13 @@ fn a_link_sets_everything_and_the_page_lasts() {
     assert_eq!(page.evaluate("document.getElementById('facts').textContent"), facts);
 
     // The page shows progress while a scene is generated.
-    let told = page.evaluate(
+    let output = page.evaluate(
         "(async () => { const bar = document.getElementById('progress'), seen = []; \
          const watch = new MutationObserver(() => seen.push(bar.position)); watch.observe(bar, { attributes: true }); \
          await yoro.showSource({ builtin: 'conference' }); watch.disconnect(); return seen; })()",
     );
-    let told: Vec<f64> = told.as_array().unwrap().iter().map(|part| part.as_f64().unwrap()).collect();
-    let parts: Vec<f64> = told.into_iter().filter(|part| *part >= 0.0).collect();
+    let output: Vec<f64> = output.as_array().unwrap().iter().map(|part| part.as_f64().unwrap()).collect();
+    let parts: Vec<f64> = output.into_iter().filter(|part| *part >= 0.0).collect();
     assert!(
         parts.len() > 5 && parts.is_sorted() && parts[0] < 0.5 && parts[parts.len() - 1] > 0.9,
         "{parts:?}"
@@ -132,9 +132,9 @@ fn a_link_sets_everything_and_the_page_lasts() {
         let field = format!("document.getElementById('{id}')");
         let before = page.evaluate(&format!("{field}.value"));
         page.evaluate(&format!("{field}.value = '{value}'"));
-        let told =
+        let output =
             page.evaluate(&format!("document.getElementById('phone').click(); {field}.validationMessage"));
-        assert!(told.as_str().unwrap().contains(part), "{value}: {told}");
+        assert!(output.as_str().unwrap().contains(part), "{value}: {output}");
         assert_eq!((page.evaluate("yoro.busy"), page.message()), (Value::Null, None), "{value}");
         page.evaluate(&format!("{field}.value = {before}; {field}.dispatchEvent(new Event('input')); 0"));
     }
@@ -163,7 +163,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     let link = "?again#scene=conference&viewpoint=1&ipd=%20&method=none&size=3&msaa=3&toString=1&__proto__=1&at=1e9,,0,0,0";
     page.browser.go(&format!("{}{link}", page.server.address));
     page.until("globalThis.yoro?.wanted?.builtin === 'conference'");
-    let told = page.message().unwrap();
+    let output = page.message().unwrap();
     for part in [
         "ipd is “ ”",
         "method is “none”",
@@ -173,7 +173,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
         "“__proto__”",
         "place is “1e9",
     ] {
-        assert!(told.contains(part), "{part}: {told}");
+        assert!(output.contains(part), "{part}: {output}");
     }
     page.choose("scene", "prototype");
     page.until("yoro.ready === true");

@@ -59,9 +59,9 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     let [two, one] = [0, 1].map(|i| costs[i].as_f64().unwrap());
     let cheaper = if two < one { "conventional" } else { "yoro" };
     assert_eq!(page.evaluate("yoro.page.methodInUse"), cheaper, "{costs}");
-    let told = page.evaluate("document.getElementById('figures').textContent");
-    let told = told.as_str().unwrap();
-    assert_eq!(told.contains("Two renders are cheaper"), two <= one, "{told}");
+    let output = page.evaluate("document.getElementById('figures').textContent");
+    let output = output.as_str().unwrap();
+    assert_eq!(output.contains("Two renders are cheaper"), two <= one, "{output}");
     page.until("!document.getElementById('label-left').hidden");
     let label = page.evaluate("document.getElementById('label-left').textContent");
     assert_eq!(label, if two < one { "Left eye: rendered" } else { "Left eye: synthesized" });
@@ -117,8 +117,8 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
         filled > 0.2 * holes && filled <= holes,
         "what is filled, and nothing else, has its colour: {filled}"
     );
-    let told = page.evaluate("Number(document.getElementById('why-holes').textContent)").as_f64().unwrap();
-    assert!((told / 100.0 - holes).abs() < 0.001, "{told} % is not {holes}");
+    let output = page.evaluate("Number(document.getElementById('why-holes').textContent)").as_f64().unwrap();
+    assert!((output / 100.0 - holes).abs() < 0.001, "{output} % is not {holes}");
     assert_eq!((page.message(), page.evaluate("yoro.page.takeErrors() ?? null")), (None, Value::Null));
 
     // Both eyes in turn are saved as an animation.

@@ -25,7 +25,7 @@ const PRECISIONS: &str =
 /// Fails without glslang.
 pub fn module() -> anyhow::Result<String> {
     let mut module = format!(
-        "// yoro {}, synthesis passes, written from its GLSL by `cargo xtask maintain three`. Do not edit.\n\
+        "// yoro {}, synthesis passes, written from its GLSL by `cargo xtask maintain renew`. Do not edit.\n\
          // SPDX-License-Identifier: MIT OR Apache-2.0\n\
          export const precisions = '{PRECISIONS}';\n",
         env!("CARGO_PKG_VERSION")
@@ -128,10 +128,10 @@ mod tests {
         }
         let made = module().unwrap();
         let file = crate::package().join("src/shaders.js");
-        if std::env::var_os("YORO_BLESS_THREE").is_some() {
+        if std::env::var_os("YORO_BLESS_SHADERS").is_some() {
             std::fs::write(&file, &made).unwrap();
         }
         let kept = std::fs::read_to_string(&file).unwrap_or_default();
-        assert!(kept == made, "{} is not of these shaders: cargo xtask maintain three", file.display());
+        assert!(kept == made, "{} is not of these shaders: cargo xtask maintain renew", file.display());
     }
 }

@@ -1,10 +1,10 @@
 //! `cargo xtask maintain`: the commands that only maintainers run, and the programs that tests use.
 
-mod compile;
 pub mod estimate;
 pub(crate) mod godot;
 pub(crate) mod hello_xr;
 pub mod monado;
+mod renew;
 
 use clap::Subcommand;
 
@@ -29,12 +29,9 @@ pub(crate) enum Task {
         #[arg(last = true, conflicts_with = "shaders")]
         frames: Vec<String>,
     },
-    /// Compile the synthesis shaders for Vulkan: app/engines/core/src/vulkan/spirv
-    Spirv,
-    /// Compile the synthesis shaders for wgpu: app/engines/wgpu/src/wgsl
-    Wgsl,
-    /// Write the synthesis shaders for three.js: app/engines/three/src/shaders.js
-    Three,
+    /// Renew everything that is generated: shaders for Vulkan, wgpu and three.js, the C library's header, the table of
+    /// settings, and the costs of shaders
+    Renew,
     /// Set up Monado, an OpenXR runtime with a simulated headset, below target/, and print how to use it
     Monado,
     /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
@@ -52,9 +49,7 @@ pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
             estimate::report(&estimate::Options { filter, gpus, bless }, &compilers, estimate::programs()?)?
         }
         Task::Estimate { frames, .. } => (estimate::frames(&frames)?, true),
-        Task::Spirv => (compile::spirv()?, true),
-        Task::Wgsl => (compile::wgsl()?, true),
-        Task::Three => (compile::three()?, true),
+        Task::Renew => renew::renew()?,
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
         Task::Godot => (godot::usage()?, true),

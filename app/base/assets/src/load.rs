@@ -192,7 +192,12 @@ pub fn load_animated(path: &Path, animation: Option<&str>) -> Result<Scene, Scen
             let GltfScene { model, cameras, sky, lights, motion, subtracted } = load_gltf(path, animation)?;
             Loaded { model, cameras, sky, lights, motion, subtracted }
         }
-        _ => return Err(SceneError::UnknownFormat { path: path.into() }),
+        _ => {
+            let path = path.display();
+            return Err(SceneError::Unusable(format!(
+                "{path} is not a scene that can be read: convert it to .obj, .gltf or .glb"
+            )));
+        }
     };
     let notes = sidecar::<SceneNotes>(path, "scene.json")?;
     let scale =
@@ -223,7 +228,7 @@ pub fn load_animated(path: &Path, animation: Option<&str>) -> Result<Scene, Scen
         lights = notes.lights.or(lights);
     }
     if let Some((file, viewpoints)) = sidecar::<Vec<Viewpoint>>(path, "camera.json")? {
-        camera_path::check(&viewpoints).map_err(|what| SceneError::Sidecar { path: file, what })?;
+        camera_path::check(&viewpoints).map_err(|what| SceneError::sidecar(&file, what))?;
         cameras = viewpoints;
     }
     let has_made_up_viewpoints = cameras.is_empty();
@@ -288,15 +293,15 @@ fn sidecar<T: serde::de::DeserializeOwned>(
     let mut bytes = Vec::new();
     yoro_files::open(&file)
         .and_then(|f| f.take(MAX_SIDECAR).read_to_end(&mut bytes))
-        .map_err(|source| SceneError::Read { path: file.clone(), source })?;
+        .map_err(SceneError::read(&file))?;
     match serde_json::from_slice(&bytes) {
         Ok(value) => Ok(Some((file, value))),
-        Err(e) => Err(SceneError::Sidecar { path: file, what: e.to_string() }),
+        Err(e) => Err(SceneError::sidecar(&file, e)),
     }
 }
 
 fn check_notes(file: &Path, notes: &SceneNotes) -> Result<(), SceneError> {
-    let fault = |what: &str| Err(SceneError::Sidecar { path: file.into(), what: what.into() });
+    let fault = |what: &str| Err(SceneError::sidecar(file, what));
     if !notes.scale.is_none_or(|s| s.is_finite() && s > 0.0) {
         return fault("the scale must be greater than 0");
     }

@@ -37,7 +37,7 @@ const FACES_PER_MODEL: usize = 1 << 16;
 /// # Errors
 /// [`SceneError`] if the file cannot be read or parsed, or a texture exists but is damaged.
 pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
-    let file = yoro_files::open(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
+    let file = yoro_files::open(path).map_err(SceneError::read(path))?;
     let mut input = Normalizer::new(path, BufReader::with_capacity(1 << 20, file));
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
     // tobj does not see statements about materials: the libraries are read below.
@@ -342,7 +342,12 @@ impl<R: BufRead> Normalizer<R> {
     }
 
     fn fault(&self, what: impl Into<String>) -> SceneError {
-        SceneError::Statement { path: self.path.clone(), line: self.line, what: what.into() }
+        SceneError::Unusable(format!(
+            "{}, line {}: {}; correct the line or export the model again",
+            self.path.display(),
+            self.line,
+            what.into()
+        ))
     }
 
     /// Reads one statement and joins continued lines. False at the end of the file.
@@ -451,11 +456,7 @@ impl<R: BufRead> Normalizer<R> {
         }
         self.counts[kind] += 1;
         if self.counts[kind] > MAX_ELEMENTS {
-            return Err(SceneError::TooLarge {
-                path: self.path.clone(),
-                limit: MAX_ELEMENTS,
-                what: "vertices",
-            });
+            return Err(SceneError::too_large(&self.path, MAX_ELEMENTS, "vertices"));
         }
         let mut near = [const { String::new() }; 3];
         if let Some(subtracted) = self.subtracted.filter(|_| kind == 0) {
@@ -505,11 +506,7 @@ impl<R: BufRead> Normalizer<R> {
         }
         self.corners += corners;
         if self.corners > MAX_ELEMENTS {
-            return Err(SceneError::TooLarge {
-                path: self.path.clone(),
-                limit: MAX_ELEMENTS,
-                what: "corners of faces",
-            });
+            return Err(SceneError::too_large(&self.path, MAX_ELEMENTS, "corners of faces"));
         }
         if corners < 3 {
             // Points and lines are dropped; the part that was begun for them stays open.

@@ -29,7 +29,7 @@ pub(super) fn palette() -> TextureImage {
 
 /// Gives every triangle the texture coordinates of its colour in the [`palette`]: display-referred (sRGB), 0 to 1. A
 /// triangle has one colour, since neighbours in the palette are not neighbours in colour. Vertices shared by triangles
-/// of different colours are split. Returns each vertex's former index.
+/// of different colours are split. Returns each vertex's previous index.
 pub(super) fn paint(
     vertices: &mut Vec<Vertex>,
     indices: &mut [u32],
@@ -37,19 +37,19 @@ pub(super) fn paint(
 ) -> Vec<u32> {
     let mut known = HashMap::new();
     let mut split = Vec::with_capacity(vertices.len());
-    let mut former = Vec::with_capacity(vertices.len());
+    let mut previous = Vec::with_capacity(vertices.len());
     for triangle in indices.chunks_exact_mut(3) {
         let uv = palette_uv(color([triangle[0], triangle[1], triangle[2]]));
         for i in triangle {
             *i = *known.entry((*i, uv.x.to_bits(), uv.y.to_bits())).or_insert_with(|| {
                 split.push(Vertex { uv, ..vertices[*i as usize] });
-                former.push(*i);
+                previous.push(*i);
                 split.len() as u32 - 1
             });
         }
     }
     *vertices = split;
-    former
+    previous
 }
 
 /// Returns the centre of a colour's texel in the palette.

@@ -1,38 +1,27 @@
 //! Smooth camera paths through key viewpoints.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::Vec3;
 
+use super::error::SceneError;
 use super::model::Viewpoint;
 use yoro::eyes::Pose;
-use yoro_files::{self as files, FileError};
-
-/// Errors of reading a camera path.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum PathError {
-    /// The file cannot be read.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The file has other contents.
-    #[error("{} is not a camera path ({what}): give a JSON array of {{position, target}}", path.display())]
-    Malformed {
-        /// The file.
-        path: PathBuf,
-        /// The fault.
-        what: String,
-    },
-}
 
 /// Reads the key viewpoints of a camera path from a file in the format of `camera.json`.
 ///
 /// # Errors
-/// [`PathError`], also if the file has no viewpoint.
-pub fn read(file: &Path) -> Result<Vec<Viewpoint>, PathError> {
-    let malformed = |what: String| PathError::Malformed { path: file.into(), what };
+/// [`SceneError`], also if the file has no viewpoint.
+pub fn read(file: &Path) -> Result<Vec<Viewpoint>, SceneError> {
+    let malformed = |what: String| {
+        SceneError::Unusable(format!(
+            "{} is not a camera path ({what}): give a JSON array of {{position, target}}",
+            file.display()
+        ))
+    };
+    let bytes = yoro_files::read(file).map_err(|error| SceneError::Unusable(error.to_string()))?;
     let viewpoints: Vec<Viewpoint> =
-        serde_json::from_slice(&files::read(file)?).map_err(|error| malformed(error.to_string()))?;
+        serde_json::from_slice(&bytes).map_err(|error| malformed(error.to_string()))?;
     check(&viewpoints).map_err(malformed)?;
     Ok(viewpoints)
 }

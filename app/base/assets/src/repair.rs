@@ -34,10 +34,10 @@ pub(super) struct RawMesh {
 }
 
 impl RawMesh {
-    /// Notes that the vertices were split. `former` has the former index of each.
-    pub fn split(&mut self, former: &[u32]) {
+    /// Notes that the vertices were split. `previous` has the previous index of each.
+    pub fn split(&mut self, previous: &[u32]) {
         if self.moving.is_some() {
-            self.sources = former.iter().map(|&i| self.sources[i as usize]).collect();
+            self.sources = previous.iter().map(|&i| self.sources[i as usize]).collect();
         }
     }
 }
@@ -68,7 +68,7 @@ pub(super) fn assemble(
     meshes.par_iter_mut().for_each(clean);
     let kept: usize = meshes.iter().map(|m| m.indices.len() / 3).sum();
     if kept == 0 {
-        return Err(SceneError::Empty { path: path.into() });
+        return Err(SceneError::empty(path));
     }
     if kept < before {
         log::warn!(
@@ -79,7 +79,7 @@ pub(super) fn assemble(
     }
     generate(&mut meshes, &materials);
     if meshes.iter().map(|m| m.vertices.len()).sum::<usize>() > MAX_ELEMENTS {
-        return Err(SceneError::TooLarge { path: path.into(), limit: MAX_ELEMENTS, what: "vertices" });
+        return Err(SceneError::too_large(path, MAX_ELEMENTS, "vertices"));
     }
     Ok(sorted(meshes, materials))
 }
@@ -137,7 +137,7 @@ fn generate(meshes: &mut [RawMesh], materials: &[Material]) {
             return;
         }
         let mut vertices = Vec::with_capacity(mesh.vertices.len());
-        let mut former = Vec::with_capacity(mesh.vertices.len());
+        let mut previous = Vec::with_capacity(mesh.vertices.len());
         let mut indices = Vec::with_capacity(mesh.indices.len());
         let mut known: HashMap<[u32; 6], u32> = HashMap::new();
         for triangle in 0..mesh.indices.len() / 3 {
@@ -155,12 +155,12 @@ fn generate(meshes: &mut [RawMesh], materials: &[Material]) {
                 let key = [old, bits[0], bits[1], bits[2], bits[3], bits[4]];
                 indices.push(*known.entry(key).or_insert_with(|| {
                     vertices.push(*v);
-                    former.push(old);
+                    previous.push(old);
                     vertices.len() as u32 - 1
                 }));
             }
         }
-        mesh.split(&former);
+        mesh.split(&previous);
         mesh.vertices = vertices;
         mesh.indices = indices;
     });
@@ -340,10 +340,8 @@ mod tests {
         assert_eq!((model.triangle_count(), model.vertices.len()), (1, 3));
         assert_eq!(model.bounds().max, Vec3::new(1.0, 1.0, 0.0));
         let nothing = RawMesh { indices: vec![0, 0, 1], ..m };
-        assert!(matches!(
-            assemble(Path::new("x"), vec![nothing], vec![Material::default()]),
-            Err(SceneError::Empty { .. })
-        ));
+        let refused = assemble(Path::new("x"), vec![nothing], vec![Material::default()]).err().unwrap();
+        assert!(refused.to_string().contains("no triangle"), "{refused}");
     }
 
     #[test]

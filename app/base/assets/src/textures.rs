@@ -229,14 +229,14 @@ impl TextureSet {
                     "{w} x {h} pixels are too many, {MAX_SOURCE_EDGE} x {} at most: scale it down",
                     MAX_SOURCE_PIXELS / MAX_SOURCE_EDGE as u64
                 );
-                Err(SceneError::Texture { path: path.into(), what })
+                Err(SceneError::texture(path, what))
             }
             Ok(Some((w, h))) => Ok(Some([w, h])),
             Ok(None) | Err(ImageError::Unsupported(_)) => {
                 self.warn_once(path, "has an unknown format and is left out: convert it to PNG or JPEG");
                 Ok(None)
             }
-            Err(e) => Err(SceneError::Texture { path: path.into(), what: e.to_string() }),
+            Err(e) => Err(SceneError::texture(path, e)),
         }
     }
 
@@ -273,7 +273,7 @@ impl TextureSet {
                 );
                 Ok(None)
             }
-            Err(e) => Err(SceneError::Texture { path: self.path(source).into(), what: e.to_string() }),
+            Err(e) => Err(SceneError::texture(self.path(source), e)),
         }
     }
 

@@ -90,7 +90,7 @@ impl Headless {
         Headless::open_limited(backend, |_| {})
     }
 
-    /// Like [`Headless::open`]; `limit` takes capabilities away, to see what a lesser driver would do. For tests and
+    /// Like [`Headless::open`]; `limit` takes capabilities away, to see what a driver with fewer features does. For tests and
     /// estimates.
     ///
     /// # Errors

@@ -48,55 +48,68 @@ mod memory {
     use std::collections::BTreeMap;
     use std::ffi::OsString;
     use std::io::{self, Cursor};
-    use std::path::{Path, PathBuf};
-    use std::sync::Arc;
+    use std::path::{Component, Path, PathBuf};
+    use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
     /// A file that can be read.
     pub type Input = Cursor<Arc<[u8]>>;
 
-    #[derive(Default)]
-    pub struct Files(BTreeMap<PathBuf, Arc<[u8]>>);
+    type Files = BTreeMap<PathBuf, Arc<[u8]>>;
 
-    impl Files {
-        pub const fn new() -> Files {
-            Files(BTreeMap::new())
-        }
+    static FILES: RwLock<Files> = RwLock::new(Files::new());
 
-        pub fn set(&mut self, files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) {
-            self.0 = files.into_iter().map(|(path, bytes)| (plain(&path), bytes.into())).collect();
-        }
+    /// Replaces the files that can be read.
+    pub fn provide(files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) {
+        *FILES.write().unwrap_or_else(PoisonError::into_inner) =
+            files.into_iter().map(|(path, bytes)| (plain(&path), bytes.into())).collect();
+    }
 
-        pub fn open(&self, path: &Path) -> io::Result<Input> {
-            let bytes = self.0.get(&plain(path)).ok_or(io::ErrorKind::NotFound)?;
-            Ok(Cursor::new(bytes.clone()))
-        }
+    fn files() -> RwLockReadGuard<'static, Files> {
+        FILES.read().unwrap_or_else(PoisonError::into_inner)
+    }
 
-        pub fn size(&self, path: &Path) -> io::Result<Option<u64>> {
-            match self.0.get(&plain(path)) {
-                Some(bytes) => Ok(Some(bytes.len() as u64)),
-                None if self.exists(path) => Ok(None),
-                None => Err(io::ErrorKind::NotFound.into()),
-            }
-        }
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// `NotFound` for a file that was not provided.
+    pub fn open(path: &Path) -> io::Result<Input> {
+        let bytes = files().get(&plain(path)).cloned().ok_or(io::ErrorKind::NotFound)?;
+        Ok(Cursor::new(bytes))
+    }
 
-        pub fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
-            let folder = plain(folder);
-            let below = self.0.keys().filter_map(|path| path.strip_prefix(&folder).ok());
-            let mut names: Vec<_> =
-                below.filter_map(|path| Some(path.components().next()?.as_os_str().to_owned())).collect();
-            names.dedup();
-            Ok(names)
+    /// Returns the size of a file in bytes; `None` if the path is a folder.
+    ///
+    /// # Errors
+    /// Those of [`open`].
+    pub fn size(path: &Path) -> io::Result<Option<u64>> {
+        match files().get(&plain(path)) {
+            Some(bytes) => Ok(Some(bytes.len() as u64)),
+            None if exists(path) => Ok(None),
+            None => Err(io::ErrorKind::NotFound.into()),
         }
+    }
 
-        pub fn exists(&self, path: &Path) -> bool {
-            let path = plain(path);
-            self.0.keys().any(|known| known.starts_with(&path))
-        }
+    /// Returns the names in a folder.
+    ///
+    /// # Errors
+    /// None: the names of an unknown folder are empty.
+    pub fn names(folder: &Path) -> io::Result<Vec<OsString>> {
+        let (files, folder) = (files(), plain(folder));
+        let below = files.keys().filter_map(|path| path.strip_prefix(&folder).ok());
+        let mut names: Vec<_> =
+            below.filter_map(|path| Some(path.components().next()?.as_os_str().to_owned())).collect();
+        names.dedup();
+        Ok(names)
+    }
+
+    /// True if a file or folder exists.
+    pub fn exists(path: &Path) -> bool {
+        let path = plain(path);
+        files().keys().any(|known| known.starts_with(&path))
     }
 
     /// Resolves `.` and `..`.
     fn plain(path: &Path) -> PathBuf {
-        use std::path::Component;
         let mut out = PathBuf::new();
         for component in path.components() {
             match component {
@@ -112,56 +125,8 @@ mod memory {
 }
 
 #[cfg(target_arch = "wasm32")]
-mod source {
-    use std::ffi::OsString;
-    use std::io;
-    use std::path::{Path, PathBuf};
-    use std::sync::{PoisonError, RwLock};
-
-    use super::memory::Files;
-    pub use super::memory::Input;
-
-    static FILES: RwLock<Files> = RwLock::new(Files::new());
-
-    /// Replaces the files that can be read.
-    pub fn provide(files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) {
-        FILES.write().unwrap_or_else(PoisonError::into_inner).set(files);
-    }
-
-    fn files() -> std::sync::RwLockReadGuard<'static, Files> {
-        FILES.read().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Opens a file.
-    ///
-    /// # Errors
-    /// `NotFound` for a file that was not provided.
-    pub fn open(path: &Path) -> io::Result<Input> {
-        files().open(path)
-    }
-
-    /// Returns the size of a file in bytes; `None` if the path is a folder.
-    ///
-    /// # Errors
-    /// Those of [`open`].
-    pub fn size(path: &Path) -> io::Result<Option<u64>> {
-        files().size(path)
-    }
-
-    /// Returns the names in a folder.
-    ///
-    /// # Errors
-    /// None: the names of an unknown folder are empty.
-    pub fn names(folder: &Path) -> io::Result<Vec<OsString>> {
-        files().names(folder)
-    }
-
-    /// True if a file or folder exists.
-    pub fn exists(path: &Path) -> bool {
-        files().exists(path)
-    }
-}
-
+pub use memory::*;
+#[cfg(not(target_arch = "wasm32"))]
 pub use source::*;
 
 use std::path::Path;
@@ -173,25 +138,26 @@ pub fn is_file(path: &Path) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use std::io::Read as _;
+    use std::path::Path;
+
+    use super::memory;
 
     #[test]
     fn files_in_memory_are_found_as_in_folders() {
-        let mut files = memory::Files::new();
-        files.set([
+        memory::provide([
             ("model.obj".into(), b"v".to_vec()),
             ("textures/a.png".into(), b"png".to_vec()),
             ("./textures/b.png".into(), Vec::new()),
         ]);
         let mut text = String::new();
-        files.open(Path::new("textures/../textures/a.png")).unwrap().read_to_string(&mut text).unwrap();
+        memory::open(Path::new("textures/../textures/a.png")).unwrap().read_to_string(&mut text).unwrap();
         assert_eq!(text, "png");
-        assert_eq!(files.size(Path::new("textures/b.png")).unwrap(), Some(0));
-        assert_eq!(files.size(Path::new("textures")).unwrap(), None);
-        assert_eq!(files.size(Path::new("tex")).unwrap_err().kind(), std::io::ErrorKind::NotFound);
-        assert_eq!(files.names(Path::new("")).unwrap(), ["model.obj", "textures"]);
-        assert_eq!(files.names(Path::new("textures")).unwrap(), ["a.png", "b.png"]);
-        assert!(files.exists(Path::new("textures")) && !files.exists(Path::new("textures/c.png")));
+        assert_eq!(memory::size(Path::new("textures/b.png")).unwrap(), Some(0));
+        assert_eq!(memory::size(Path::new("textures")).unwrap(), None);
+        assert_eq!(memory::size(Path::new("tex")).unwrap_err().kind(), std::io::ErrorKind::NotFound);
+        assert_eq!(memory::names(Path::new("")).unwrap(), ["model.obj", "textures"]);
+        assert_eq!(memory::names(Path::new("textures")).unwrap(), ["a.png", "b.png"]);
+        assert!(memory::exists(Path::new("textures")) && !memory::exists(Path::new("textures/c.png")));
     }
 }

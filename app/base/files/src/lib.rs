@@ -10,12 +10,9 @@ mod input;
 pub mod interrupt;
 pub mod xdg;
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
 
 pub use input::*;
 
@@ -110,9 +107,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 }
 
 /// Lets `fill` write a file that appears under `path` only when it is complete: it is written under a temporary name in
-/// the same folder and then renamed. A crash, a full disk or Ctrl-C leaves the old file. Temporary files of killed
-/// processes are removed by the next process that writes into the folder. Missing parent folders are created. A device
-/// or pipe (`/dev/stdout`) is written in place.
+/// the same folder and then renamed. A crash, a full disk or Ctrl-C leaves the old file. Missing parent folders are
+/// created. A device or pipe (`/dev/stdout`) is written in place.
 pub fn write_with(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
@@ -135,9 +131,8 @@ pub fn write_with(
         _ => Path::new("."),
     };
     create_folder(folder)?;
-    sweep(folder);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(PART[0]).suffix(PART[1]);
+    builder.prefix(".yoro-").suffix(".part");
     #[cfg(unix)]
     {
         // The crate's default is 0600, but an output should have the permissions of any new file.
@@ -145,37 +140,9 @@ pub fn write_with(
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut part = builder.tempfile_in(folder).map_err(failed)?;
-    // Tells `sweep` that the file is in use. Not every file system has locks.
-    let _ = part.as_file().try_lock();
     fill_and_flush(part.as_file_mut(), fill).map_err(failed)?;
     part.persist(&target).map_err(|error| failed(error.error))?;
     Ok(())
-}
-
-/// Start and end of the names of unfinished files.
-const PART: [&str; 2] = [".yoro-", ".part"];
-/// Unfinished files younger than this are kept: their writers may be about to lock them.
-const YOUNG: Duration = Duration::from_secs(10);
-
-/// Removes unfinished files of killed processes, once per folder. Files that are being written are locked.
-fn sweep(folder: &Path) {
-    static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-    let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
-    if !SWEPT.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.clone()) {
-        return;
-    }
-    for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
-        if !(name.starts_with(PART[0]) && name.ends_with(PART[1])) {
-            continue;
-        }
-        let age = entry.metadata().and_then(|meta| meta.modified()).ok().and_then(|time| time.elapsed().ok());
-        let is_old = age.is_some_and(|age| age >= YOUNG);
-        if is_old && fs::File::open(entry.path()).is_ok_and(|part| part.try_lock().is_ok()) {
-            let _ = fs::remove_file(entry.path());
-        }
-    }
 }
 
 /// Opens a file for appending, and prevents other processes from doing the same until it is closed. Creates the file
@@ -261,27 +228,6 @@ mod tests {
         );
         assert_eq!(read(&path).unwrap(), b"first");
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn what_a_killed_process_has_left_is_removed() {
-        let dir = tempfile::tempdir().unwrap();
-        let long_ago = std::time::SystemTime::now() - Duration::from_secs(60);
-        let part = |name: &str, age| {
-            let file = fs::File::create(dir.path().join(name)).unwrap();
-            file.set_modified(age).unwrap();
-            file
-        };
-        drop(part(".yoro-dead.part", long_ago));
-        drop(part(".yoro-young.part", std::time::SystemTime::now()));
-        drop(part(".other.part", long_ago));
-        let written = part(".yoro-written.part", long_ago);
-        written.lock().unwrap();
-        write(&dir.path().join("out.txt"), b"x").unwrap();
-        let mut names: Vec<_> =
-            fs::read_dir(dir.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-        names.sort();
-        assert_eq!(names, [".other.part", ".yoro-written.part", ".yoro-young.part", "out.txt"]);
     }
 
     #[test]

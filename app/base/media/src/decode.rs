@@ -61,7 +61,8 @@ pub fn load_depth(path: &Path) -> Result<DepthFile, PictureError> {
     if let Some(wide) = &wide
         && wide.pixels().any(|p| p.0[0] != p.0[1] || p.0[0] != p.0[2])
     {
-        return Err(PictureError::NotGrey { path: path.into() });
+        let what = "is a colour image: depth must be grey (one channel, or red = green = blue)";
+        return Err(PictureError::unusable(path, what));
     }
     // The conversions between 8 and 16 bits are exact (times 257). Of equal channels, the first is the grey.
     let values: Vec<f32> = match wide {
@@ -82,13 +83,16 @@ fn decode(path: &Path) -> Result<DynamicImage, PictureError> {
 }
 
 fn decode_bytes(path: &Path, bytes: Vec<u8>) -> Result<DynamicImage, PictureError> {
-    let damaged = |reason| PictureError::Damaged { path: path.into(), reason };
+    let damaged = |reason| PictureError::damaged(path, reason);
     let format = image::guess_format(&bytes)
         .ok()
         // TGA has no signature. Any other file without a signature is not what its name says.
         .or_else(|| ImageFormat::from_path(path).ok().filter(|format| *format == ImageFormat::Tga))
         .filter(ImageFormat::reading_enabled)
-        .ok_or_else(|| PictureError::UnknownFormat { path: path.into() })?;
+        .ok_or_else(|| {
+            let what = "is not a picture that can be read: give a PNG, JPEG, EXR, TGA or BMP file";
+            PictureError::unusable(path, what)
+        })?;
     if format == ImageFormat::OpenExr {
         check_exr_has_color(path, &bytes)?;
     }
@@ -115,18 +119,22 @@ fn check_exr_has_color(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
     if headers.iter().any(|names| has_color(names)) {
         return Ok(());
     }
-    Err(PictureError::NoColor { path: path.into(), found: headers.concat().join(", ") })
+    let found = headers.concat().join(", ");
+    let what =
+        format!("is no colour picture (its channels are {found}): give one with the channels R, G and B");
+    Err(PictureError::unusable(path, what))
 }
 
 fn exr_meta(path: &Path, bytes: &[u8]) -> Result<exr::meta::MetaData, PictureError> {
-    let damaged = |reason| PictureError::Damaged { path: path.into(), reason };
+    let damaged = |reason| PictureError::damaged(path, reason);
     let read = || exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false);
     decoder::run(|| read().map_err(|error| damaged(error.to_string())), damaged)
 }
 
 fn check_size(path: &Path, width: usize, height: usize) -> Result<(), PictureError> {
     if width.max(height) > MAX_SIZE as usize {
-        return Err(PictureError::TooLarge { path: path.into(), width, height });
+        let what = format!("says it is {width}x{height} pixels: up to {MAX_SIZE}x{MAX_SIZE} are read");
+        return Err(PictureError::unusable(path, what));
     }
     Ok(())
 }
@@ -135,7 +143,7 @@ fn decode_exr_channel(path: &Path, bytes: &[u8]) -> Result<DepthImage, PictureEr
     for header in &exr_meta(path, bytes)?.headers {
         check_size(path, header.layer_size.width(), header.layer_size.height())?;
     }
-    let damaged = |reason| PictureError::Damaged { path: path.into(), reason };
+    let damaged = |reason| PictureError::damaged(path, reason);
     let read = || {
         exr::prelude::read()
             .no_deep_data()
@@ -156,20 +164,25 @@ fn decode_exr_channel(path: &Path, bytes: &[u8]) -> Result<DepthImage, PictureEr
         .layer_data
         .iter()
         .find_map(|layer| depth_channel(&layer.channel_data.list).map(|channel| (layer, channel)))
-        .ok_or_else(|| PictureError::NoDepthChannel { path: path.into(), found: found() })?;
+        .ok_or_else(|| {
+            let found = found();
+            let what = format!("has no depth channel (Z, depth, Y or R; it has {found}): name the channel Z");
+            PictureError::unusable(path, what)
+        })?;
     if layer.size != window.size || layer.attributes.layer_position != window.position {
-        return Err(PictureError::Cropped { path: path.into() });
+        let what =
+            "covers only a part of its picture: save it without cropping (data window = display window)";
+        return Err(PictureError::unusable(path, what));
     }
     let (width, height) = (layer.size.width() as u32, layer.size.height() as u32);
     let values: Vec<f32> = channel.sample_data.values_as_f32().collect();
     if let Some(at) = values.iter().position(|value| value.is_nan()) {
         let (x, y) = (at as u32 % width, at as u32 / width);
-        return Err(PictureError::NotANumber { path: path.into(), x, y });
+        let what = format!("has a depth that is not a number at column {x}, row {y}: render it again");
+        return Err(PictureError::unusable(path, what));
     }
-    DepthImage::from_raw(width, height, values).ok_or_else(|| PictureError::Damaged {
-        path: path.into(),
-        reason: "a channel has fewer samples than pixels".into(),
-    })
+    DepthImage::from_raw(width, height, values)
+        .ok_or_else(|| PictureError::damaged(path, "a channel has fewer samples than pixels"))
 }
 
 type ExrChannel = exr::image::AnyChannel<exr::image::FlatSamples>;

@@ -14,6 +14,11 @@ fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()
 }
 
+/// True if a file was refused with these words.
+fn is_refused<T>(result: Result<T, PictureError>, words: &str) -> bool {
+    matches!(result, Err(PictureError::Unusable(what)) if what.contains(words))
+}
+
 fn gradient(width: u32, height: u32) -> RgbImage {
     RgbImage::from_fn(width, height, |x, y| Rgb([(x * 7) as u8, (y * 11) as u8, (x * y) as u8]))
 }
@@ -60,7 +65,7 @@ fn depth_is_read_from_every_kind_of_png() {
     assert_eq!(load_depth(&path).unwrap().image, depth.image);
 
     save_color(&path, &gradient(5, 3)).unwrap();
-    assert!(matches!(load_depth(&path), Err(PictureError::NotGrey { .. })));
+    assert!(is_refused(load_depth(&path), "is a colour image"));
 
     let ramp = DepthImage::from_fn(7, 2, |x, y| Luma([(x + 7 * y) as f32 / 13.0]));
     save_depth(&path, &ramp).unwrap();
@@ -117,7 +122,7 @@ fn exr_depth_is_unchanged_and_the_channel_is_found() {
     let error = load_depth(&path).unwrap_err().to_string();
     assert!(error.contains("d.exr has no depth channel") && error.contains("B, G, R"), "{error}");
     write_exr(&path, &["Z"], f32::NAN);
-    assert!(matches!(load_depth(&path), Err(PictureError::NotANumber { x: 0, y: 0, .. })));
+    assert!(is_refused(load_depth(&path), "column 0, row 0"));
 }
 
 #[test]
@@ -130,26 +135,24 @@ fn bad_files_are_refused_with_a_remedy() {
     let whole = encode_png(&gradient(40, 40)).unwrap();
     for cut in [20, whole.len() / 2, whole.len() - 20] {
         files::write(&path, &whole[..cut]).unwrap();
-        assert!(matches!(load_color(&path), Err(PictureError::Damaged { .. })), "cut at {cut}");
-        assert!(matches!(load_depth(&path), Err(PictureError::Damaged { .. })), "cut at {cut}");
+        assert!(is_refused(load_color(&path), "is damaged"), "cut at {cut}");
+        assert!(is_refused(load_depth(&path), "is damaged"), "cut at {cut}");
     }
     files::write(&dir.path().join("a.txt"), b"no picture").unwrap();
-    let error = load_color(&dir.path().join("a.txt")).unwrap_err();
-    assert!(matches!(error, PictureError::UnknownFormat { .. }));
+    assert!(is_refused(load_color(&dir.path().join("a.txt")), "is not a picture"));
 
     let mut huge = whole.clone();
     huge[16..20].copy_from_slice(&100_000u32.to_be_bytes());
     let crc = crc32(&huge[12..29]);
     huge[29..33].copy_from_slice(&crc.to_be_bytes());
     files::write(&path, &huge).unwrap();
-    let error = load_color(&path).unwrap_err();
-    assert!(matches!(error, PictureError::TooLarge { width: 100_000, height: 40, .. }), "{error}");
+    assert!(is_refused(load_color(&path), "100000x40 pixels"));
 
     let exr = dir.path().join("d.exr");
     write_exr(&exr, &["Z"], 1.0);
     let bytes = files::read(&exr).unwrap();
     files::write(&exr, &bytes[..bytes.len() - 9]).unwrap();
-    assert!(matches!(load_depth(&exr), Err(PictureError::Damaged { .. })));
+    assert!(is_refused(load_depth(&exr), "is damaged"));
     let error = save_color(&dir.path().join("a.gif"), &gradient(2, 2)).unwrap_err();
     assert!(matches!(error, PictureError::Extension { .. }));
 }

@@ -6,8 +6,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use serde::Deserialize;
 use serde::de::{Deserializer, Error as _};
-use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 use yoro::eyes::{Eye, GuardBand};
 
@@ -105,7 +105,7 @@ impl SettingsError {
 }
 
 /// The settings file: keys for all applications, and those for single ones.
-#[derive(Deserialize, Serialize)]
+#[derive(Deserialize)]
 struct SettingsFile {
     #[serde(default)]
     application: BTreeMap<String, Table>,
@@ -123,30 +123,30 @@ struct Source {
 
 /// Returns the mistakes in the settings of every application that the file names, and in those for all applications.
 pub fn mistakes() -> Vec<SettingsError> {
-    mistakes_in(path().and_then(|path| read(&path)), variable)
+    mistakes_in(read_file(), variable)
 }
 
 fn mistakes_in(
-    file: Option<Result<Vec<Source>, SettingsError>>,
+    file: Result<Vec<Source>, SettingsError>,
     environment: impl Fn(&str) -> Option<OsString>,
 ) -> Vec<SettingsError> {
-    match file.unwrap_or(Ok(Vec::new())) {
+    let mistake = |source: Source| {
+        let error = Settings::deserialize(source.values).err()?;
+        Some(SettingsError::new(source.place, error))
+    };
+    match file {
+        Ok(sections) => sections.into_iter().chain(variables(environment)).filter_map(mistake).collect(),
         Err(error) => vec![error],
-        Ok(mut sources) => {
-            sources.extend(variables(environment));
-            let check = |source: Source| Some((source.place, Settings::deserialize(source.values).err()?));
-            let errors = sources.into_iter().filter_map(check);
-            errors.map(|(place, error)| SettingsError::new(place, error)).collect()
-        }
     }
 }
 
-/// Reads the settings file, if it exists.
-fn read(path: &Path) -> Option<Result<Vec<Source>, SettingsError>> {
-    match std::fs::read_to_string(path) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
-        Err(error) => Some(Err(SettingsError::new(path.display().to_string(), error))),
-        Ok(text) => Some(sections(path, &text)),
+/// Returns the sections of the settings file, which are none if it does not exist.
+fn read_file() -> Result<Vec<Source>, SettingsError> {
+    let Some(path) = path() else { return Ok(Vec::new()) };
+    match std::fs::read_to_string(&path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Vec::new()),
+        Err(error) => Err(SettingsError::new(path.display().to_string(), error)),
+        Ok(text) => sections(&path, &text),
     }
 }
 
@@ -204,16 +204,16 @@ impl Settings {
     /// application, those over the file's settings for all, and those over the defaults. A section or a variable with a
     /// mistake is returned as an error, and changes nothing.
     pub fn of(application: &str) -> (Settings, Vec<SettingsError>) {
-        Settings::resolve(application, path().and_then(|path| read(&path)), variable)
+        Settings::resolve(application, read_file(), variable)
     }
 
     fn resolve(
         application: &str,
-        file: Option<Result<Vec<Source>, SettingsError>>,
+        file: Result<Vec<Source>, SettingsError>,
         environment: impl Fn(&str) -> Option<OsString>,
     ) -> (Settings, Vec<SettingsError>) {
         let (mut settings, mut values, mut errors) = (Settings::default(), Table::new(), Vec::new());
-        let sections = file.unwrap_or(Ok(Vec::new())).unwrap_or_else(|error| {
+        let sections = file.unwrap_or_else(|error| {
             errors.push(error);
             Vec::new()
         });
@@ -240,7 +240,7 @@ mod tests {
 
     fn resolve(file: &str, variables: &[(&str, &str)]) -> (Settings, Vec<String>) {
         let file = sections(Path::new("/c/yoro/layer.toml"), file);
-        let (settings, errors) = Settings::resolve("hello", Some(file), environment(variables));
+        let (settings, errors) = Settings::resolve("hello", file, environment(variables));
         (settings, errors.iter().map(ToString::to_string).collect())
     }
 
@@ -319,7 +319,7 @@ mod tests {
         }
         let other = "dominant = 'left'\n[application.other]\ndominant = 'middle'";
         assert!(resolve(other, &[]).1.is_empty());
-        let mistakes = mistakes_in(Some(sections(Path::new("/c/yoro/layer.toml"), other)), environment(&[]));
+        let mistakes = mistakes_in(sections(Path::new("/c/yoro/layer.toml"), other), environment(&[]));
         let [mistake] = &mistakes[..] else { panic!("{mistakes:?}") };
         assert_eq!(mistake.place, "/c/yoro/layer.toml, [application.other]");
     }

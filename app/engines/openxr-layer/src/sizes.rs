@@ -4,9 +4,17 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use crate::xdg;
+
+/// The sizes in pixels of an eye and of the view that contains both.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Sizes {
+    eye: [u32; 2],
+    view: [u32; 2],
+}
 
 /// Returns the path of the file, `$XDG_STATE_HOME/yoro/layer-sizes.json` (`~/.local/state` if that is not set), or
 /// `None` without a home folder and on Android.
@@ -16,14 +24,14 @@ pub fn path() -> Option<PathBuf> {
 
 /// Returns the size in pixels that was remembered under these circumstances, scaled to an eye of this size.
 pub fn recall(circumstances: &str, eye: [u32; 2]) -> Option<[u32; 2]> {
-    let [old_eye, view] = entry(&read(&path()?), circumstances)?;
-    Some(scaled(eye, old_eye, view))
+    let old = entry(&read(&path()?), circumstances)?;
+    Some(scaled(eye, old.eye, old.view))
 }
 
 /// Remembers the size of the view for an eye of this size. If that fails, the next start uses an estimate.
 pub fn remember(circumstances: &str, eye: [u32; 2], view: [u32; 2]) {
     if let Some(path) = path() {
-        write(&path, circumstances, [eye, view]);
+        write(&path, circumstances, Sizes { eye, view });
     }
 }
 
@@ -41,22 +49,19 @@ fn read(path: &Path) -> Map<String, Value> {
     serde_json::from_str(&text).unwrap_or_default()
 }
 
-/// Returns the sizes of an eye and of the view, if the entry exists and is possible.
-fn entry(sizes: &Map<String, Value>, circumstances: &str) -> Option<[[u32; 2]; 2]> {
-    let entry = sizes.get(circumstances)?;
-    let number = |name: &str, i: usize| u32::try_from(entry[name][i].as_u64()?).ok();
-    let size = |name: &str| Some([number(name, 0)?, number(name, 1)?]);
-    let [eye, view] = [size("eye")?, size("view")?];
+/// Returns the sizes that were remembered, if the entry exists and is possible.
+fn entry(sizes: &Map<String, Value>, circumstances: &str) -> Option<Sizes> {
+    let Sizes { eye, view } = Sizes::deserialize(sizes.get(circumstances)?).ok()?;
     let can_be = |i: usize| eye[i] > 0 && (eye[i]..=eye[i].saturating_mul(16)).contains(&view[i]);
-    (can_be(0) && can_be(1)).then_some([eye, view])
+    (can_be(0) && can_be(1)).then_some(Sizes { eye, view })
 }
 
-fn write(path: &Path, circumstances: &str, [eye, view]: [[u32; 2]; 2]) {
+fn write(path: &Path, circumstances: &str, new: Sizes) {
     let mut sizes = read(path);
-    if entry(&sizes, circumstances) == Some([eye, view]) {
+    if entry(&sizes, circumstances) == Some(new) {
         return;
     }
-    sizes.insert(circumstances.to_owned(), json!({ "eye": eye, "view": view }));
+    sizes.insert(circumstances.to_owned(), json!(new));
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).ok();
     }
@@ -76,11 +81,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("state/layer-sizes.json");
         let known = |circumstances: &str| entry(&read(&path), circumstances);
+        let sizes = |eye, view| Sizes { eye, view };
         assert_eq!(known("one"), None);
-        write(&path, "one", [[100, 90], [130, 90]]);
-        write(&path, "two", [[10, 10], [12, 11]]);
-        write(&path, "one", [[100, 90], [131, 90]]);
-        assert_eq!((known("one"), known("two")), (Some([[100, 90], [131, 90]]), Some([[10, 10], [12, 11]])));
+        write(&path, "one", sizes([100, 90], [130, 90]));
+        write(&path, "two", sizes([10, 10], [12, 11]));
+        write(&path, "one", sizes([100, 90], [131, 90]));
+        let both = [sizes([100, 90], [131, 90]), sizes([10, 10], [12, 11])];
+        assert_eq!([known("one"), known("two")], both.map(Some));
         for damaged in [
             "",
             "{",
@@ -93,14 +100,14 @@ mod tests {
         ] {
             fs::write(&path, damaged).unwrap();
             assert_eq!(known("one"), None, "{damaged}");
-            write(&path, "one", [[100, 90], [130, 90]]);
-            assert_eq!(known("one"), Some([[100, 90], [130, 90]]), "{damaged}");
+            write(&path, "one", sizes([100, 90], [130, 90]));
+            assert_eq!(known("one"), Some(sizes([100, 90], [130, 90])), "{damaged}");
         }
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
     }
 
     #[test]
-    fn another_resolution_grows_alike() {
+    fn another_resolution_grows_in_proportion() {
         assert_eq!(scaled([320, 240], [320, 240], [331, 240]), [331, 240]);
         assert_eq!(scaled([640, 480], [320, 240], [331, 240]), [662, 480]);
         assert_eq!(scaled([1000, 1000], [320, 240], [331, 240]), [1035, 1000]);

@@ -33,10 +33,10 @@ pub fn one_line(text: &str) -> String {
 
 /// Returns an error followed by its causes. A cause that the error's own message already contains is not repeated.
 pub fn sentence(error: &anyhow::Error) -> String {
-    error.chain().skip(1).fold(error.to_string(), |told, cause| {
+    error.chain().skip(1).fold(error.to_string(), |message, cause| {
         // Errors of files tell these in their own words.
         let cause = cause.downcast_ref().map_or_else(|| cause.to_string(), yoro_files::remedy);
-        if told.contains(&cause) { told } else { format!("{told}: {cause}") }
+        if message.contains(&cause) { message } else { format!("{message}: {cause}") }
     })
 }
 
@@ -95,8 +95,8 @@ mod tests {
     fn a_cause_is_told_once() {
         let source = io::Error::other("the disk is gone");
         let error = anyhow::Error::new(SceneError::Read { path: "a.obj".into(), source }).context("scene 1");
-        let told = "scene 1: a.obj cannot be read (the disk is gone): check its permissions and the disk";
-        assert_eq!(sentence(&error), told);
+        let message = "scene 1: a.obj cannot be read (the disk is gone): check its permissions and the disk";
+        assert_eq!(sentence(&error), message);
         let error = Err::<(), _>(io::Error::other("full")).context("out.png").unwrap_err();
         assert_eq!(of(&error), "out.png: full");
         let source = io::Error::from(io::ErrorKind::StorageFull);
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn a_remedy_has_its_option() {
-        let told = of(&ContextError::NotEgl.into());
-        assert!(told.ends_with(" (--gl egl)"), "{told}");
+        let message = of(&ContextError::NotEgl.into());
+        assert!(message.ends_with(" (--gl egl)"), "{message}");
     }
 }

@@ -8,20 +8,17 @@ use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs, list};
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::machine;
-use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
+use crate::cli::settings::{self, Compared, Renderer, SettingOptions};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::Eye;
 use yoro_bench::machine::Parameter;
-use yoro_bench::report::RunReport;
+use yoro_bench::report::{RunReport, SceneReport};
 use yoro_bench::run::{Candidate, Plan};
 use yoro_files as files;
 use yoro_gl::Context;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Method, Pipeline};
 use yoro_scenes::{self, BUILTINS};
-
-/// The number of viewpoints per scene whose pictures are in the report and in the output folder.
-const PICTURED: usize = 1;
 
 /// Compare rendering both eyes with synthesizing one, on built-in scenes or on files: pictures, figures, a report
 #[derive(clap::Args, Clone, Debug)]
@@ -52,7 +49,7 @@ pub struct RunArgs {
     #[command(flatten)]
     eyes: EyeArgs,
     #[command(flatten)]
-    stereo: SettingOptions<Stereo>,
+    stereo: SettingOptions<Compared>,
     #[command(flatten)]
     renderer: SettingOptions<Renderer>,
     #[command(flatten)]
@@ -84,10 +81,20 @@ impl Subcommand for RunArgs {
         }
         let plan = plan(self, &settings);
         let bar = progress_bar(names.len() as u64 * plan.steps());
+        // The smallest scene comes first, so that there is something to look at soon.
+        let mut order: Vec<usize> = (0..names.len()).collect();
+        order.sort_by_key(|&at| kilo_triangles(&names[at]));
         let mut scenes = Vec::new();
-        for name in &names {
-            scenes.push(plan.measure(gl, name, &bar)?);
+        for at in order {
+            let scene = plan.measure(gl, &names[at], &bar)?;
+            let picture = write_pictures(self, &scene)?;
+            if scenes.is_empty() && !self.json {
+                bar.suspend(|| println!("the first picture: {}", picture.display()));
+            }
+            scenes.push((at, scene));
         }
+        scenes.sort_by_key(|(at, _)| *at);
+        let scenes = scenes.into_iter().map(|(_, scene)| scene).collect();
         bar.finish_and_clear();
         let report = RunReport {
             title: "yoro: one render, two eyes".into(),
@@ -96,7 +103,6 @@ impl Subcommand for RunArgs {
             timing_method: timing_method(self, gl),
             scenes,
         };
-        write_pictures(self, &report)?;
         let page = report.write(&self.out)?.page;
         if self.json {
             print!("{}", report.to_json()?);
@@ -120,10 +126,10 @@ fn plan(args: &RunArgs, settings: &RenderSettings) -> Plan {
             Method::Synthesized => candidates.extend(args.pipelines.iter().map(|&pipeline| Candidate {
                 name: pipeline.name(),
                 method,
-                options: args.stereo.options_of(pipeline),
+                options: args.stereo.options(pipeline),
             })),
             _ => {
-                let options = args.stereo.options_of(Pipeline::default());
+                let options = args.stereo.options(Pipeline::default());
                 candidates.push(Candidate { name: method.name(), method, options });
             }
         }
@@ -131,7 +137,7 @@ fn plan(args: &RunArgs, settings: &RenderSettings) -> Plan {
     Plan {
         eyes: args.eyes.options(),
         render: settings.clone(),
-        conventional: args.stereo.options_of(Pipeline::default()),
+        conventional: args.stereo.options(Pipeline::default()),
         candidates,
         viewpoints: args.viewpoints as usize,
         rounds: args.rounds,
@@ -139,25 +145,27 @@ fn plan(args: &RunArgs, settings: &RenderSettings) -> Plan {
     }
 }
 
-fn write_pictures(args: &RunArgs, report: &RunReport) -> anyhow::Result<()> {
-    let dominant = args.eyes.dominant;
-    for scene in &report.scenes {
-        for viewpoint in scene.viewpoints.iter().take(PICTURED) {
-            let save = |kind: &str, image: &RgbImage| {
-                yoro_media::save_color(&eyes::picture_path(&args.out, &scene.name, kind), image)
-            };
-            let pair = |other: &RgbImage| match dominant {
-                Eye::Left => yoro_media::side_by_side(&viewpoint.dominant, other),
-                Eye::Right => yoro_media::side_by_side(other, &viewpoint.dominant),
-            };
-            save("conventional", &pair(&viewpoint.ground_truth)?)?;
-            for view in &viewpoint.views {
-                save(&view.method, &pair(&view.eye)?)?;
-                save(&format!("{}.error-map", view.method), &view.error)?;
-            }
-        }
+/// Returns the size of a built-in scene in thousands of triangles; that of a file is not known yet.
+fn kilo_triangles(scene: &str) -> u32 {
+    BUILTINS.iter().find(|builtin| builtin.name == scene).map_or(0, |builtin| builtin.kilo_triangles)
+}
+
+/// Writes the pictures of a scene's first viewpoint, and returns the path of the last method's.
+fn write_pictures(args: &RunArgs, scene: &SceneReport) -> anyhow::Result<PathBuf> {
+    let path = |kind: &str| eyes::picture_path(&args.out, &scene.name, kind);
+    let mut shown = path(Method::Conventional.name());
+    let Some(viewpoint) = scene.viewpoints.first() else { return Ok(shown) };
+    let pair = |other: &RgbImage| match args.eyes.dominant {
+        Eye::Left => yoro_media::side_by_side(&viewpoint.dominant, other),
+        Eye::Right => yoro_media::side_by_side(other, &viewpoint.dominant),
+    };
+    yoro_media::save_color(&shown, &pair(&viewpoint.ground_truth)?)?;
+    for view in &viewpoint.views {
+        shown = path(&view.method);
+        yoro_media::save_color(&shown, &pair(&view.eye)?)?;
+        yoro_media::save_color(&path(&format!("{}.error-map", view.method)), &view.error)?;
     }
-    Ok(())
+    Ok(shown)
 }
 
 fn parameters(args: &RunArgs, settings: &RenderSettings) -> Vec<Parameter> {
@@ -174,7 +182,7 @@ fn parameters(args: &RunArgs, settings: &RenderSettings) -> Vec<Parameter> {
         ("seed", args.seed.to_string()),
     ];
     for &pipeline in &args.pipelines {
-        let o = args.stereo.options_of(pipeline);
+        let o = args.stereo.options(pipeline);
         let mut text = format!("guard band {:?}", o.guard_band);
         if pipeline == Pipeline::Paper {
             text += &format!(", {:?}", o.synthesis.paper);

@@ -66,6 +66,29 @@ impl Group for Stereo {
     ];
 }
 
+/// The settings of stereo frames whose pipelines are compared, each as its name says: none is switched to two renders.
+#[derive(Clone, Copy, Debug)]
+pub struct Compared;
+
+impl Group for Compared {
+    const KEYS: &'static [&'static str] = &[
+        "imbuffer",
+        "linear-interpolation",
+        "kernel-height",
+        "strict",
+        "guard-band",
+        "near-field",
+        "split-disparity",
+    ];
+}
+
+impl SettingOptions<Compared> {
+    /// Returns the options with a pipeline.
+    pub fn options(&self, pipeline: Pipeline) -> StereoOptions {
+        StereoOptions { policy: None, ..stereo_options(&self.settings, pipeline) }
+    }
+}
+
 /// The settings of the picture behind lenses that `yoro view` has options for. Its own `--screen` is in pixels; the
 /// setting `screen` is in millimetres.
 #[derive(Clone, Copy, Debug)]
@@ -144,12 +167,7 @@ impl SettingOptions<Foveated> {
 impl SettingOptions<Stereo> {
     /// Returns the options with the chosen pipeline.
     pub fn options(&self) -> StereoOptions {
-        self.options_of(self.settings.pipeline)
-    }
-
-    /// Returns the options with any pipeline.
-    pub fn options_of(&self, pipeline: Pipeline) -> StereoOptions {
-        stereo_options(&self.settings, pipeline)
+        stereo_options(&self.settings, self.settings.pipeline)
     }
 }
 

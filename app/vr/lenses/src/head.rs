@@ -67,7 +67,7 @@ impl BiasEstimator {
     const STILL_FRAMES: u32 = 50;
     const STILL_ACCELERATION: f64 = 0.5;
     const STILL_RATE: f64 = 0.03;
-    const LARGEST_BIAS: f64 = 0.30;
+    const MAX_BIAS: f64 = 0.30;
     const ENOUGH_WEIGHT: f64 = 25.0;
 
     fn new() -> BiasEstimator {
@@ -102,11 +102,11 @@ impl BiasEstimator {
         let smooth = self.rate.add(rate, seconds, 1.0);
         self.count(1, (rate - smooth).length() < Self::STILL_RATE);
         let speed = smooth.length();
-        if self.still != [Self::STILL_FRAMES; 2] || speed >= Self::LARGEST_BIAS {
+        if self.still != [Self::STILL_FRAMES; 2] || speed >= Self::MAX_BIAS {
             return;
         }
         // The faster it seems to turn, the more likely it really does.
-        let weight = (1.0 - speed / Self::LARGEST_BIAS).powi(2);
+        let weight = (1.0 - speed / Self::MAX_BIAS).powi(2);
         self.bias.add(smooth - self.gravity_rate, seconds, weight);
     }
 
@@ -171,8 +171,8 @@ pub struct HeadTracker {
 impl HeadTracker {
     const START_COVARIANCE: f64 = 25.0;
     const SIGMA: [f64; 2] = [0.75, 7.0];
-    const LARGEST_NORM_CHANGE: f64 = 0.15;
-    const LONGEST_PREDICTION: f64 = 0.1;
+    const MAX_NORM_CHANGE: f64 = 0.15;
+    const MAX_PREDICTION: f64 = 0.1;
 
     /// Returns a tracker that has received no samples.
     pub fn new(rotation: Rotation) -> HeadTracker {
@@ -282,7 +282,7 @@ impl HeadTracker {
         // If the acceleration changes, the device is being moved, and does not measure gravity alone.
         self.norm_change = 0.5 * change + 0.5 * self.norm_change;
         let [low, high] = Self::SIGMA;
-        let sigma = (low + self.norm_change / Self::LARGEST_NORM_CHANGE * (high - low)).min(high);
+        let sigma = (low + self.norm_change / Self::MAX_NORM_CHANGE * (high - low)).min(high);
         let innovation = |pose: DQuat| rotation_between(pose * DVec3::Y, measured);
         let now = innovation(pose);
         const DELTA: f64 = 1e-7;
@@ -313,7 +313,7 @@ impl HeadTracker {
     /// Returns the rotation from world to head `seconds` (at most 0.1) after the newest sample, at constant angular
     /// velocity.
     pub fn head_from_world(&self, seconds: f64) -> Quat {
-        let seconds = seconds.clamp(0.0, Self::LONGEST_PREDICTION);
+        let seconds = seconds.clamp(0.0, Self::MAX_PREDICTION);
         let pose = self.screen_from_world.unwrap_or(DQuat::IDENTITY);
         let velocity = self.velocity.value.unwrap_or(DVec3::ZERO);
         (rotation_of(-velocity * seconds) * pose).normalize().as_quat()
@@ -323,7 +323,7 @@ impl HeadTracker {
     /// target shortly after the newest sample is predicted from that sample, any other from `now_ns`.
     pub fn world_from_head(&self, now_ns: i64, target_ns: i64) -> Quat {
         let since_sample = target_ns - self.newest_ns;
-        let reach = (2.0 * Self::LONGEST_PREDICTION * 1e9) as i64;
+        let reach = (2.0 * Self::MAX_PREDICTION * 1e9) as i64;
         let ahead = if (0..=reach).contains(&since_sample) { since_sample } else { target_ns - now_ns };
         self.head_from_world(ahead as f64 * 1e-9).inverse()
     }

@@ -12,7 +12,7 @@ pub const VERSION: u16 = 3;
 pub type Token = [u8; 16];
 
 /// The largest magnitude of a client's time in ms: centuries.
-const LONGEST_MS: f64 = 1e13;
+const MAX_MS: f64 = 1e13;
 /// The largest magnitude of a coordinate of a head's position, in metres; the page has the same limit.
 const FARTHEST: f32 = 1e6;
 /// The largest tangent of a frustum's sides: that of 80 degrees.
@@ -275,7 +275,7 @@ impl FromClient {
                 request.time_ms.is_finite() && sizes && request.eyes.iter().all(EyeView::is_valid)
             }
             FromClient::Report(report) => {
-                report.arrivals.iter().flatten().all(|arrival| arrival.time_ms.abs() < LONGEST_MS)
+                report.arrivals.iter().flatten().all(|arrival| arrival.time_ms.abs() < MAX_MS)
             }
             _ => true,
         };

@@ -1,6 +1,6 @@
 //! liblog: the application's log, which is written to the summary and, on request, to standard error.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 use std::ffi::{c_char, c_int};
 use std::sync::Mutex;
 
@@ -19,13 +19,10 @@ pub struct Log {
     abort_message: Mutex<String>,
 }
 
-/// The part of the log that is written to the summary.
-#[derive(Clone, Default)]
-pub struct Collected {
-    /// Lines with one of [`TAGS`], and errors.
-    pub lines: Vec<LogLine>,
-    /// Number of lines per tag.
-    pub counts: BTreeMap<String, u64>,
+#[derive(Default)]
+struct Collected {
+    /// Lines with one of [`TAGS`], and errors: those of the summary.
+    lines: Vec<LogLine>,
     recent: VecDeque<String>,
     total: usize,
 }
@@ -54,14 +51,6 @@ impl Log {
             host.say(&shown);
         }
         let mut state = lock(&self.state);
-        *state
-            .counts
-            .entry(if matches!(priority, 'E' | 'F') {
-                format!("{} {priority}", line.tag)
-            } else {
-                line.tag.clone()
-            })
-            .or_default() += 1;
         state.recent.push_back(format!("{}/{}: {}", line.priority, line.tag, line.text));
         state.total += 1;
         if state.recent.len() > KEPT {
@@ -72,9 +61,9 @@ impl Log {
         }
     }
 
-    /// Returns the part for the summary.
-    pub fn collected(&self) -> Collected {
-        lock(&self.state).clone()
+    /// Returns the lines for the summary.
+    pub fn lines(&self) -> Vec<LogLine> {
+        lock(&self.state).lines.clone()
     }
 
     /// Returns the number of the first line, from number `from` on, that contains the text. The tag does not matter.

@@ -23,9 +23,9 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
             format!("it has {size} bytes, at most {MAX_BUFFER} can be read: split the model"),
         ));
     }
-    let read = |source| SceneError::Read { path: path.into(), source };
+    let read = SceneError::read(path);
     let mut bytes = Vec::new();
-    yoro_files::open(path).map_err(read)?.take(MAX_BUFFER).read_to_end(&mut bytes).map_err(read)?;
+    yoro_files::open(path).map_err(&read)?.take(MAX_BUFFER).read_to_end(&mut bytes).map_err(&read)?;
     Ok(bytes)
 }
 

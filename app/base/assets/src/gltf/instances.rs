@@ -24,8 +24,7 @@ impl Reader<'_> {
             let accessor = index.as_u64().and_then(|i| document.accessors().nth(usize::try_from(i).ok()?));
             let accessor = accessor.ok_or_else(|| damaged("name an accessor that does not exist"))?;
             if accessor.count() > MAX_INSTANCES {
-                let path = self.path.into();
-                return Err(SceneError::TooLarge { path, limit: MAX_INSTANCES, what: "instances of a mesh" });
+                return Err(SceneError::too_large(self.path, MAX_INSTANCES, "instances of a mesh"));
             }
             Ok(Some(accessor))
         };

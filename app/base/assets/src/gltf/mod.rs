@@ -107,14 +107,14 @@ pub(crate) fn load_gltf(path: &Path, animation: Option<&str>) -> Result<GltfScen
         materials.pop();
     }
     let (mut model, placed) =
-        assemble(path, meshes, materials).map_err(|error| match (error, compression(&document)) {
-            (SceneError::Empty { path }, Some(e)) => SceneError::unusable(
-                &path,
+        assemble(path, meshes, materials).map_err(|error| match compression(&document) {
+            Some(extension) => SceneError::unusable(
+                path,
                 format!(
-                    "its triangles are compressed by {e}, which is not supported: export the model without it"
+                    "its triangles are compressed by {extension}, which is not supported: export the model without it"
                 ),
             ),
-            (error, _) => error,
+            None => error,
         })?;
     model.textures = built.images;
     place_carried(&carried, placed, &mut motion, &mut model);
@@ -229,14 +229,14 @@ fn paint_meshes(
     }
     built.images.push(palette());
     for (mesh, colors) in meshes.iter_mut().zip(colors).filter(|(mesh, _)| painted[mesh.material]) {
-        let former = paint(&mut mesh.vertices, &mut mesh.indices, |corners| match colors {
+        let previous = paint(&mut mesh.vertices, &mut mesh.indices, |corners| match colors {
             Some(colors) => {
                 let mean = corners.into_iter().map(|i| colors[i as usize]).sum::<Vec3>() / 3.0;
                 Vec3::from(mean.to_array().map(to_srgb))
             }
             None => Vec3::ONE,
         });
-        mesh.split(&former);
+        mesh.split(&previous);
     }
 }
 
@@ -295,11 +295,8 @@ impl Reader<'_> {
                     let count = raw.indices.len().max(raw.vertices.len()).saturating_mul(instances.len());
                     corners = count.saturating_add(corners);
                     if corners > MAX_ELEMENTS {
-                        return Err(SceneError::TooLarge {
-                            path: self.path.into(),
-                            limit: MAX_ELEMENTS,
-                            what: "corners of triangles",
-                        });
+                        let what = "corners of triangles";
+                        return Err(SceneError::too_large(self.path, MAX_ELEMENTS, what));
                     }
                     (raw.name, raw.material) = (name.into(), material);
                     place(&mut raw, wanted.placement);

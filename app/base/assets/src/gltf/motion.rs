@@ -408,11 +408,7 @@ impl Reader<'_> {
             return Ok(None);
         }
         if count.saturating_mul(vertices) > MAX_ELEMENTS {
-            return Err(SceneError::TooLarge {
-                path: self.path.into(),
-                limit: MAX_ELEMENTS,
-                what: "vertices in morph targets",
-            });
+            return Err(SceneError::too_large(self.path, MAX_ELEMENTS, "vertices in morph targets"));
         }
         let fits = |track: &Track| {
             let parts = if track.interpolation == Interpolation::CubicSpline { 3 } else { 1 };

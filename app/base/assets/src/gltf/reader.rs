@@ -64,11 +64,7 @@ impl Reader<'_> {
             return Ok((Cow::Borrowed(data), stride));
         }
         if count > MAX_ELEMENTS {
-            return Err(SceneError::TooLarge {
-                path: self.path.into(),
-                limit: MAX_ELEMENTS,
-                what: "elements in an accessor",
-            });
+            return Err(SceneError::too_large(self.path, MAX_ELEMENTS, "elements in an accessor"));
         }
         let mut elements = match base {
             Some((data, stride)) => {

@@ -56,7 +56,7 @@ pub struct EncodedPicture {
 }
 
 /// The largest box of a file that is read whole, in bytes. An index has about 20 for a picture.
-const LARGEST_BOX: u64 = 256 << 20;
+const MAX_BOX: u64 = 256 << 20;
 /// The most pictures that are decoded before one that is shown earlier: H.264's limit.
 const MAX_HELD: usize = 16;
 
@@ -77,20 +77,16 @@ impl Index {
     pub fn read(path: &Path, file: &mut (impl Read + Seek), length: u64) -> Result<Index, VideoError> {
         let failed = |source| VideoError::from(FileError::Read { path: path.into(), source });
         let mut demuxer = Mp4FileDemuxer::new();
-        let (mut is_fragmented, mut is_avc3) = (false, false);
         while let Some(required) = demuxer.required_input() {
             let rest = length.saturating_sub(required.position);
             let size = required.size.map_or(rest, |size| size as u64);
             if size == 0 || size > rest {
                 return Err(VideoError::format(path, "it is no MP4 file, or it is cut off"));
             }
-            if size > LARGEST_BOX {
+            if size > MAX_BOX {
                 return Err(VideoError::format(path, format!("its index has {} MiB", size >> 20)));
             }
             let data = read_at(file, required.position, size as usize).map_err(failed)?;
-            let has = |name: &[u8; 4]| data.windows(4).any(|four| four == name);
-            is_fragmented |= has(b"mvex");
-            is_avc3 |= has(b"avc3");
             demuxer.handle_input(Input { position: required.position, data: &data });
         }
         let mut pictures = Vec::new();
@@ -130,15 +126,8 @@ impl Index {
             times.push((i64::try_from(sample.timestamp).unwrap_or(i64::MAX).saturating_add(offset), ticks));
         }
         let (entry, frame_rate) = found.ok_or_else(|| {
-            let remedy = "`ffmpeg -i OLD.mp4 -c copy NEW.mp4` makes one that can be read";
-            VideoError::format(
-                path,
-                match (is_fragmented, is_avc3) {
-                    (true, _) => format!("it is fragmented: {remedy}"),
-                    (_, true) => format!("its H.264 is stored as avc3: {remedy}"),
-                    _ => "it has no H.264 video".into(),
-                },
-            )
+            let remedy = "`ffmpeg -i OLD.mp4 -c copy NEW.mp4` makes a file of one that is fragmented or stored as avc3";
+            VideoError::format(path, format!("it has no H.264 video that can be read; {remedy}"))
         })?;
         let durations = sort(&mut pictures, &times)
             .ok_or_else(|| VideoError::format(path, "its pictures are not in an order of H.264"))?;

@@ -150,17 +150,16 @@ fn hue(color: [u8; 3]) -> Option<f32> {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
     use image::Rgb;
     use std::io::Cursor;
 
     /// A camera whose axis is left of the centre of 60 x 32 pixels, as the application writes it.
-    pub(crate) const CAMERA: &str =
-        r#"{"intrinsicMatrix":[50,0,0,0,50,0,25,16,1],"rangeOfEncodedDepth":[0,4]}"#;
+    const CAMERA: &str = r#"{"intrinsicMatrix":[50,0,0,0,50,0,25,16,1],"rangeOfEncodedDepth":[0,4]}"#;
 
     /// Returns the colour of a hue, 0 to 1.
-    pub(crate) fn color(hue: f32) -> Rgb<u8> {
+    fn color(hue: f32) -> Rgb<u8> {
         let channel = |n: f32| {
             let k = (n + hue * 6.0) % 6.0;
             (255.0 * (1.0 - k.min(4.0 - k).clamp(0.0, 1.0))).round() as u8

@@ -1,4 +1,4 @@
-//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain spirv`.
+//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain renew`.
 
 use crate::synthesis::backend::{PerKind, WarpKind};
 
@@ -77,11 +77,11 @@ mod tests {
             folder: Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv"),
             ending: "spv",
             compiler: compiled::glslang(&ARGUMENTS),
-            command: "cargo xtask maintain spirv",
+            command: "cargo xtask maintain renew",
             compile: |source: &Source| compiled::spirv(source, &ARGUMENTS),
         };
         let sources = MODULES.each_ref().map(source);
-        if std::env::var_os("YORO_BLESS_SPIRV").is_some() {
+        if std::env::var_os("YORO_BLESS_SHADERS").is_some() {
             compiled.renew(&sources).unwrap();
         }
         compiled.check(&sources).unwrap();

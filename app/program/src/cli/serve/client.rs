@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 use anyhow::Context as _;
 
 use super::access::Access;
-use super::places::Places;
 use yoro_stream::{FromClient, FromServer, Refusal};
 
 /// The largest message of a client in bytes.
@@ -60,8 +59,6 @@ impl Drop for Seat {
 /// Admits clients of all transports.
 pub struct Lobby {
     pub access: Access,
-    /// The places of connections that wait for admission.
-    pub places: Places,
     /// The first message to an admitted client, such as the head's first pose.
     welcome: Vec<u8>,
     is_taken: Arc<AtomicBool>,
@@ -72,8 +69,8 @@ impl Lobby {
     /// Returns a lobby and the clients that it admits.
     pub fn new(access: Access, welcome: &FromServer) -> (Arc<Lobby>, Receiver<Client>) {
         let (admitted, clients) = mpsc::channel();
-        let (places, is_taken) = (Places::default(), Arc::default());
-        (Arc::new(Lobby { access, places, welcome: welcome.to_bytes(), is_taken, admitted }), clients)
+        let is_taken = Arc::default();
+        (Arc::new(Lobby { access, welcome: welcome.to_bytes(), is_taken, admitted }), clients)
     }
 
     /// Returns the answer to a client's first message, and the seat if it may be served and no one else is.

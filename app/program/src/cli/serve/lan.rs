@@ -107,10 +107,10 @@ fn is_local(address: IpAddr) -> bool {
 /// Returns key and certificate for an address: those kept in the folder, or new ones, which are stored there. Only this
 /// user may read the key.
 fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Vec<u8>> {
-    let told = || format!("{} cannot be used for the server's key", folder.display());
-    DirBuilder::new().recursive(true).mode(0o700).create(folder).with_context(told)?;
+    let unusable = || format!("{} cannot be used for the server's key", folder.display());
+    DirBuilder::new().recursive(true).mode(0o700).create(folder).with_context(unusable)?;
     // A new file belongs to this user and nobody else can read it.
-    let mut new = tempfile::NamedTempFile::new_in(folder).with_context(told)?;
+    let mut new = tempfile::NamedTempFile::new_in(folder).with_context(unusable)?;
     let user = new.as_file().metadata()?.uid();
     ensure!(
         fs::metadata(folder)?.uid() == user,
@@ -118,7 +118,7 @@ fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Ve
          your own",
         folder.display()
     );
-    fs::set_permissions(folder, fs::Permissions::from_mode(0o700)).with_context(told)?;
+    fs::set_permissions(folder, fs::Permissions::from_mode(0o700)).with_context(unusable)?;
     let path = folder.join(format!("{address}.{}", kind.suffix));
     // A link, or what another user has written or read, is replaced.
     let is_own = fs::symlink_metadata(&path)
@@ -140,8 +140,8 @@ fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Ve
     params.not_before = (now - DAY).into();
     params.not_after = (now + (kind.valid - 1) * DAY).into();
     let pem = [key.serialize_pem(), params.self_signed(&key)?.pem()].concat().into_bytes();
-    new.write_all(&pem).and_then(|()| new.as_file().sync_all()).with_context(told)?;
-    new.persist(&path).map_err(|error| error.error).with_context(told)?;
+    new.write_all(&pem).and_then(|()| new.as_file().sync_all()).with_context(unusable)?;
+    new.persist(&path).map_err(|error| error.error).with_context(unusable)?;
     Ok(pem)
 }
 

@@ -3,7 +3,6 @@
 mod access;
 mod client;
 mod lan;
-mod places;
 mod session;
 mod source;
 mod web_server;

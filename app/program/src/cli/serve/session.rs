@@ -1,7 +1,6 @@
 //! A client's session: the messages that it sends, and the frames that it gets. It has the thread of the GL context.
 
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
-use std::thread;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
@@ -36,15 +35,14 @@ impl Server {
     /// # Errors
     /// If there is nothing to serve any more.
     pub fn serve(&mut self, admitted: &Receiver<Client>) -> anyhow::Result<()> {
-        let printer = Printer::start();
         while !interrupt::requested() {
             match admitted.recv_timeout(Duration::from_millis(100)) {
                 Ok(client) => {
-                    printer.say(format!("a client has connected by {}", client.transport.name()));
-                    let ended = self.session(&client, &printer);
+                    println!("a client has connected by {}", client.transport.name());
+                    let ended = self.session(&client);
                     drop(client);
                     let reason = ended?.map_or(String::new(), |reason| format!(": {reason}"));
-                    printer.say(format!("the client has gone{reason}"));
+                    println!("the client has gone{reason}");
                 }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => bail!("the port is closed"),
@@ -57,7 +55,7 @@ impl Server {
     ///
     /// # Errors
     /// If nobody can be served.
-    fn session(&mut self, client: &Client, printer: &Printer) -> anyhow::Result<Option<String>> {
+    fn session(&mut self, client: &Client) -> anyhow::Result<Option<String>> {
         let Client { heard, transport, .. } = client;
         let delivery = if transport.can_give_up() { Delivery::Independent } else { Delivery::InOrder };
         let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate, delivery);
@@ -86,7 +84,7 @@ impl Server {
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return Ok(None),
             }
-            statistics.print(&control, printer);
+            statistics.print(&control);
             if control.gives_up(self.start.elapsed()) {
                 transport.give_up(number);
             }
@@ -142,24 +140,6 @@ impl Server {
     }
 }
 
-/// Prints lines on a thread of its own, since a terminal may be stopped (Ctrl-S).
-struct Printer(SyncSender<String>);
-
-impl Printer {
-    /// The most lines that wait. What is more is not printed.
-    const MOST: usize = 16;
-
-    fn start() -> Printer {
-        let (send, lines) = mpsc::sync_channel::<String>(Printer::MOST);
-        thread::spawn(move || lines.into_iter().for_each(|line| println!("{line}")));
-        Printer(send)
-    }
-
-    fn say(&self, line: String) {
-        let _ = self.0.try_send(line);
-    }
-}
-
 /// Statistics that are printed once a second.
 struct Statistics {
     since: Instant,
@@ -193,14 +173,14 @@ impl Statistics {
         self.encode_ms += header.encode_ms;
     }
 
-    fn print(&mut self, control: &RateControl, printer: &Printer) {
+    fn print(&mut self, control: &RateControl) {
         let seconds = self.since.elapsed().as_secs_f32();
         if seconds < 1.0 {
             return;
         }
         if self.frames > 0 {
             let frames = self.frames as f32;
-            printer.say(format!(
+            println!(
                 "{:.0} frames/s, {} lost, {:.2} Mbit/s, quantizer {}, render {:.1} ms, encode {:.1} ms, sent and arrived {}",
                 frames / seconds,
                 control.lost() - self.lost,
@@ -209,7 +189,7 @@ impl Statistics {
                 self.render_ms / frames,
                 self.encode_ms / frames,
                 control.round_trip().map_or("never".into(), |time| format!("after {} ms", time.as_millis()))
-            ));
+            );
         }
         *self = Statistics::new(control.lost());
     }

@@ -46,7 +46,7 @@ pub struct Video {
     due: Duration,
     /// The pictures that have been read since the first.
     read: usize,
-    /// The first damage, and whether it was told.
+    /// The first damage, and whether it was logged.
     damage: Option<(VideoError, bool)>,
 }
 
@@ -83,9 +83,9 @@ impl Video {
             let has_more = match self.reader.read_packed() {
                 Ok(Some(planes)) => {
                     self.read += 1;
-                    if let Some((error, told @ false)) = &mut self.damage {
+                    if let Some((error, is_logged @ false)) = &mut self.damage {
                         log::warn!("{error}; what cannot be read is left out");
-                        *told = true;
+                        *is_logged = true;
                     }
                     return Ok(planes);
                 }

@@ -1,4 +1,4 @@
-//! HTTP, encrypted or not: the page's files, and the way to its WebSocket. Connections have a place and little time.
+//! HTTP, encrypted or not: the page's files, and the way to its WebSocket. Connections have little time.
 
 use std::convert::Infallible;
 use std::io;
@@ -22,7 +22,6 @@ use tokio::time::{Instant, sleep, timeout_at};
 use tokio_rustls::TlsAcceptor;
 
 use super::client::{HELLO_TIMEOUT, Lobby};
-use super::places::Place;
 use super::web_socket;
 use yoro_files::http;
 
@@ -59,28 +58,24 @@ impl WebServer {
                     continue;
                 }
             };
-            let place = self.lobby.places.take(address.ip());
-            let (server, lost) = (self.clone(), place.lost());
+            let server = self.clone();
             tokio::spawn(async move {
-                tokio::select! {
-                    served = server.connect(socket, place) => if let Err(error) = served {
-                        log::info!("{address} is not served: {error}");
-                    },
-                    () = lost => log::info!("{address} makes room for a newer connection"),
+                if let Err(error) = server.connect(socket).await {
+                    log::info!("{address} is not served: {error}");
                 }
             });
         }
     }
 
-    async fn connect(self: Arc<Self>, socket: TcpStream, place: Place) -> anyhow::Result<()> {
+    async fn connect(self: Arc<Self>, socket: TcpStream) -> anyhow::Result<()> {
         let deadline = Instant::now() + HELLO_TIMEOUT;
         socket.set_nodelay(true)?;
         match self.tls.clone() {
             Some(tls) => {
                 let encrypted = timeout_at(deadline, tls.accept(socket)).await??;
-                self.serve(encrypted, place, deadline).await
+                self.serve(encrypted, deadline).await
             }
-            None => self.serve(socket, place, deadline).await,
+            None => self.serve(socket, deadline).await,
         }
     }
 
@@ -88,13 +83,11 @@ impl WebServer {
     async fn serve(
         self: Arc<Self>,
         connection: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
-        place: Place,
         deadline: Instant,
     ) -> anyhow::Result<()> {
-        let place = Arc::new(place);
         let service = service_fn(move |request| {
-            let (server, place) = (self.clone(), place.clone());
-            async move { Ok::<_, Infallible>(server.answer(request, place, deadline).await) }
+            let server = self.clone();
+            async move { Ok::<_, Infallible>(server.answer(request, deadline).await) }
         });
         let serving = http1::Builder::new()
             .timer(TokioTimer::new())
@@ -106,12 +99,7 @@ impl WebServer {
         Ok(timeout_at(deadline + FILE_TIMEOUT, serving).await??)
     }
 
-    async fn answer(
-        &self,
-        request: Request<Incoming>,
-        place: Arc<Place>,
-        deadline: Instant,
-    ) -> Response<Body> {
+    async fn answer(&self, request: Request<Incoming>, deadline: Instant) -> Response<Body> {
         if request.uri() != "/stream" {
             return file(&self.folder, &request).await;
         }
@@ -122,7 +110,7 @@ impl WebServer {
             return say(StatusCode::FORBIDDEN, "");
         }
         let body = || text("");
-        web_socket::accept(request, body, self.lobby.clone(), (place, deadline))
+        web_socket::accept(request, body, self.lobby.clone(), deadline)
             .unwrap_or_else(|error| say(StatusCode::BAD_REQUEST, &format!("{error}\n")))
     }
 }

@@ -4,7 +4,7 @@ use std::pin::pin;
 use std::sync::{Arc, mpsc};
 use std::time::Instant;
 
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::{Context as _, bail};
 use futures_util::{SinkExt as _, Stream, StreamExt as _};
 use hyper::body::{Bytes, Incoming};
 use hyper::upgrade::Upgraded;
@@ -18,7 +18,6 @@ use tokio_tungstenite::tungstenite::protocol::{Role, WebSocketConfig};
 use tokio_tungstenite::tungstenite::{self, Message};
 
 use super::client::{Lobby, MAX_MESSAGE_BYTES, SILENCE, Seat, Transport};
-use super::places::Place;
 use yoro_stream::FromClient;
 
 type Socket = WebSocketStream<TokioIo<Upgraded>>;
@@ -32,19 +31,13 @@ pub fn accept<B>(
     mut request: Request<Incoming>,
     body: impl FnOnce() -> B,
     lobby: Arc<Lobby>,
-    (place, deadline): (Arc<Place>, time::Instant),
+    deadline: time::Instant,
 ) -> Result<Response<B>, tungstenite::Error> {
     let response = create_response_with_body(&request, body)?;
     let upgrade = hyper::upgrade::on(&mut request);
     tokio::spawn(async move {
-        let admitted = tokio::select! {
-            admitted = timeout_at(deadline, async { admit(upgrade.await?, &lobby).await }) => {
-                admitted.map_err(anyhow::Error::from).flatten()
-            }
-            () = place.lost() => Err(anyhow!("it makes room for a newer connection")),
-        };
-        drop(place);
-        match admitted {
+        let admitted = timeout_at(deadline, async { admit(upgrade.await?, &lobby).await }).await;
+        match admitted.map_err(anyhow::Error::from).flatten() {
             Ok((socket, seat)) => {
                 let (send, frames) = frames::channel(1);
                 let heard = lobby.admit(Box::new(Frames(send)), seat);

@@ -4,7 +4,7 @@ use std::net::UdpSocket;
 use std::sync::{Arc, mpsc};
 use std::time::Instant;
 
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::{Context as _, bail};
 use tokio::io::AsyncReadExt as _;
 use tokio::runtime::Handle;
 use tokio::sync::watch;
@@ -42,21 +42,14 @@ pub async fn accept(endpoint: &Endpoint<Server>, lobby: &Arc<Lobby>) {
         let incoming = endpoint.accept().await;
         let address = incoming.remote_address();
         if !incoming.remote_address_validated() {
-            // A forged sender address must not occupy a place.
+            // A forged sender address gets no more than a packet.
             incoming.retry();
             continue;
         }
-        let place = lobby.places.take(address.ip());
         let lobby = lobby.clone();
         tokio::spawn(async move {
-            let admitted = tokio::select! {
-                admitted = timeout(HELLO_TIMEOUT, admit(incoming, &lobby)) => {
-                    admitted.map_err(anyhow::Error::from).flatten()
-                }
-                () = place.lost() => Err(anyhow!("it makes room for a newer connection")),
-            };
-            drop(place);
-            match admitted {
+            let admitted = timeout(HELLO_TIMEOUT, admit(incoming, &lobby)).await;
+            match admitted.map_err(anyhow::Error::from).flatten() {
                 Ok((connection, seat)) => {
                     let heard = lobby.admit(Box::new(Frames::new(connection.clone())), seat);
                     hear(&connection, &heard).await;

@@ -138,6 +138,7 @@ impl StereoSession {
     /// # Errors
     /// [`StereoError::Gl`] if the driver refuses.
     pub fn prepare(&mut self, scene: &mut PreparedScene) -> Result<(), StereoError> {
+        self.fallback.prepare(&scene.renderer)?;
         let both = self.both.as_mut().filter(|_| self.auto.is_some());
         [Some(&mut self.chosen), both].into_iter().flatten().try_for_each(|methods| methods.prepare(scene))
     }

@@ -37,7 +37,7 @@ const LONG_FULL: u32 = 3;
 /// A frame that is due for this long in s when it is made was requested too late to be made at once.
 const LATE_REQUEST: f64 = 0.003;
 /// The longest time in s between two requests that make frames larger, and the weight of a new time in the mean.
-const LONGEST_INTERVAL: f64 = 0.2;
+const MAX_INTERVAL: f64 = 0.2;
 const REQUESTED_WEIGHT: f64 = 0.1;
 /// If nothing is requested for this long in s, earlier frames say nothing about the present.
 const PAUSE: f64 = 1.0;
@@ -46,7 +46,7 @@ const MAX_UNDECODED: usize = 4;
 /// If nothing arrives of what is on its way for this long, all of it is given up. The time doubles with each round that is given up, up to the
 /// longest, until a frame arrives.
 const GIVE_UP_TIMEOUT: Duration = Duration::from_millis(500);
-const LONGEST_TIMEOUT: Duration = Duration::from_secs(4);
+const MAX_TIMEOUT: Duration = Duration::from_secs(4);
 /// The most frames that are remembered.
 const MAX_REMEMBERED: usize = 256;
 
@@ -229,7 +229,7 @@ impl RateControl {
             let passed = now - last.time;
             // It was due, but was not made at once.
             if self.due_since.take().is_some_and(|since| now - since > LATE_REQUEST) {
-                let interval = passed.clamp(self.interval, LONGEST_INTERVAL);
+                let interval = passed.clamp(self.interval, MAX_INTERVAL);
                 self.requested += REQUESTED_WEIGHT * (interval - self.requested);
             }
             if passed > PAUSE {
@@ -336,7 +336,7 @@ impl RateControl {
         if silence < self.give_up.as_secs_f64() {
             return false;
         }
-        self.give_up = (2 * self.give_up).min(LONGEST_TIMEOUT);
+        self.give_up = (2 * self.give_up).min(MAX_TIMEOUT);
         self.rate.give_up(silence, now);
         self.trend.forget();
         match self.delivery {

@@ -26,7 +26,7 @@ const FOLLOW_DOWN: f64 = 0.039;
 /// A value above the threshold by more than this is an outlier, which the threshold does not follow.
 const OUTLIER: f64 = 15.0;
 /// The longest time in ms by which the threshold is moved at once.
-const LONGEST_STEP: f64 = 100.0;
+const MAX_STEP: f64 = 100.0;
 /// A queue is one if it delays all frames of this time in ms, more than the fastest frame of the last one or two windows of
 /// this length in ms: by the time that a frame's own bytes may take, and the noise times a factor, but
 /// at most the last.
@@ -218,7 +218,7 @@ impl Trend {
         let beyond = value.abs() - self.threshold;
         if beyond <= OUTLIER {
             let follow = if beyond < 0.0 { FOLLOW_DOWN } else { FOLLOW_UP };
-            self.threshold += follow * beyond * passed.min(LONGEST_STEP);
+            self.threshold += follow * beyond * passed.min(MAX_STEP);
             self.threshold = self.threshold.clamp(THRESHOLDS[0], THRESHOLDS[1]);
         }
     }
