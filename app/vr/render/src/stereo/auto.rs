@@ -55,11 +55,6 @@ impl Auto {
         std::mem::take(&mut self.is_new)
     }
 
-    /// Notes that a frame was rendered by neither path, for its eyes or for a comparison.
-    pub(super) fn skip_frame(&mut self) {
-        (self.rendered, self.clock_ms) = (None, None);
-    }
-
     /// Starts a new choice, for another place in the scene.
     pub(super) fn scene_changed(&mut self) {
         self.chooser.scene_changed();

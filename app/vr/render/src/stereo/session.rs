@@ -58,6 +58,14 @@ pub struct FrameReport {
     pub has_depth: bool,
 }
 
+/// How a frame is rendered.
+struct Plan {
+    path: StereoPath,
+    fallback: Option<FallbackReason>,
+    /// True if the frame counts for the automatic choice between two methods.
+    counts: bool,
+}
+
 /// A method, named or the cheaper of two, and two renders in its place for eyes that it cannot use.
 ///
 /// While sizes stay, frames allocate and compile nothing; the first frame with an inset makes what insets need.
@@ -184,98 +192,96 @@ impl StereoSession {
         if let Some(load) = previous {
             self.take_load(load);
         }
-        match targets {
-            FrameTargets::Images(images) => self.render(scene, views, &images.fit(views)?),
-            FrameTargets::Layers(layers) => self.render(scene, views, &layers),
-            FrameTargets::Eyes(to) if views.inset.is_none() => {
-                self.render(scene, views, &LayerTargets { wide: to, inset: None })
-            }
-            FrameTargets::Eyes(to) => self.render_composed(scene, views, &to),
+        // Eyes with an inset are composed of images of this session.
+        let mut images = match &targets {
+            FrameTargets::Eyes(_) if views.inset.is_some() => Some(self.take_images()?),
+            _ => None,
+        };
+        let (to, composed) = match targets {
+            FrameTargets::Images(images) => (images.fit(views)?, None),
+            FrameTargets::Layers(layers) => (layers, None),
+            FrameTargets::Eyes(to) => match &mut images {
+                None => (LayerTargets { wide: to, inset: None }, None),
+                Some(images) => {
+                    let layers = self.layers_of(images.fit(views)?, views, &to);
+                    (layers, Some(to.map(|eye| eye.color)))
+                }
+            },
+        };
+        let Plan { path, fallback, counts } = self.plan(views, scene)?;
+        if self.auto.as_mut().is_some_and(|auto| counts && auto.take_new()) {
+            // Makes everything that the other method needs now, while the scene comes into view, rather than in its first
+            // turn.
+            self.methods(path.other())?.0.render(scene, views, &to, None)?;
         }
+        let begin = self.auto.as_ref().filter(|_| counts).and_then(|auto| auto.begin(&to));
+        let (methods, near) = self.methods(path)?;
+        let near = near.filter(|_| path == StereoPath::Synthesis || fallback == Some(FallbackReason::Near));
+        let has_motion = methods.render(scene, views, &to, near)?;
+        if let Some(auto) = &mut self.auto {
+            auto.end((counts && fallback.is_none()).then_some(path), begin, &to);
+        }
+        if let Some((images, to)) = images.as_mut().zip(composed) {
+            images.compose(&to)?;
+        }
+        self.images = images.or(self.images.take());
+        let has_depth = to.wide.iter().all(|eye| eye.depth.is_some());
+        Ok(FrameReport { fallback, has_motion, has_depth })
     }
 
-    /// Renders eyes with an inset into images of this session, and composes them.
-    fn render_composed(
-        &mut self,
-        scene: &mut PreparedScene,
-        views: &StereoViews,
-        to: &[EyeTarget; 2],
-    ) -> Result<FrameReport, StereoError> {
-        let mut images = match self.images.take() {
-            Some(images) => images,
-            None => StereoImages::new(&self.gl)?,
-        };
-        let mut layers = images.fit(views)?;
-        if views.wide.eyes.has_same_frusta(&views.shown) {
-            for (layer, to) in layers.wide.iter_mut().zip(to) {
-                layer.depth = to.depth.filter(|depth| depth.to.size == views.wide.eyes.size);
-                layer.motion = to.motion;
-            }
+    /// Decides how a frame is rendered. This is the only place that decides that both eyes must be.
+    fn plan(&mut self, views: &StereoViews, scene: &PreparedScene) -> Result<Plan, StereoError> {
+        let fallback = self.fallback.of_eyes(views);
+        if fallback.is_some() || self.is_comparing && self.method != Method::Conventional {
+            return Ok(Plan { path: StereoPath::TwoViews, fallback, counts: false });
         }
-        for (_, to) in layers.wide.iter().zip(to).filter(|(layer, _)| layer.depth.is_none()) {
-            if let Some(depth) = to.depth.map(|depth| depth.to) {
+        let path = self.auto.as_ref().map_or(StereoPath::Synthesis, Auto::path);
+        if path == StereoPath::TwoViews {
+            return Ok(Plan { path, fallback: None, counts: true });
+        }
+        self.fallback.prepare(&scene.renderer)?;
+        let fallback = self.fallback.of_content();
+        let path = if fallback.is_some() { StereoPath::TwoViews } else { path };
+        Ok(Plan { path, fallback, counts: true })
+    }
+
+    /// Returns the methods of a path, and what measures the dominant eye's depth for later frames.
+    fn methods(
+        &mut self,
+        path: StereoPath,
+    ) -> Result<(&mut LayerMethods, Option<&mut NearSwitch>), GlError> {
+        if path == StereoPath::TwoViews {
+            self.two_renders()?;
+        }
+        let both = self.both.as_mut().filter(|_| path == StereoPath::TwoViews);
+        Ok((both.unwrap_or(&mut self.chosen), self.fallback.near()))
+    }
+
+    /// Returns the targets of layers that are composed into the eyes' targets.
+    fn layers_of<'a>(
+        &self,
+        images: LayerTargets<'static>,
+        views: &StereoViews,
+        to: &[EyeTarget<'a>; 2],
+    ) -> LayerTargets<'a> {
+        let mut layers: LayerTargets<'a> = images;
+        let has_same_frusta = views.wide.eyes.has_same_frusta(&views.shown);
+        for (layer, to) in layers.wide.iter_mut().zip(to) {
+            layer.motion = to.motion.filter(|_| has_same_frusta);
+            let Some(depth) = to.depth else { continue };
+            if has_same_frusta && depth.to.size == views.wide.eyes.size {
+                layer.depth = Some(depth);
+            } else {
+                let depth = depth.to;
                 self.gl.bind_framebuffer(depth.framebuffer, depth.origin, depth.size);
                 self.gl.clear_rectangle(depth.origin, depth.size, Some(views.shown.depth.clear_value()));
             }
         }
-        let report = self.render(scene, views, &layers);
-        let composed = images.compose(&to.each_ref().map(|eye| eye.color));
-        self.images = Some(images);
-        composed?;
-        report
+        layers
     }
 
-    /// Renders all layers of a frame by the method, or by two renders.
-    fn render(
-        &mut self,
-        scene: &mut PreparedScene,
-        views: &StereoViews,
-        to: &LayerTargets,
-    ) -> Result<FrameReport, StereoError> {
-        let has_depth = to.wide.iter().all(|eye| eye.depth.is_some());
-        let eyes_differ = self.fallback.of_eyes(views);
-        if eyes_differ.is_some() || self.is_comparing && self.method != Method::Conventional {
-            if let Some(auto) = &mut self.auto {
-                auto.skip_frame();
-            }
-            let has_motion = self.two_renders()?.render(scene, views, to, None)?;
-            return Ok(FrameReport { fallback: eyes_differ, has_motion, has_depth });
-        }
-        let path = self.auto.as_ref().map_or(StereoPath::Synthesis, Auto::path);
-        let is_new = self.auto.as_mut().is_some_and(Auto::take_new);
-        if is_new {
-            // Makes everything that the other method needs now, while the scene comes into view, rather than in its first
-            // turn.
-            self.render_by(path.other(), scene, views, to)?;
-        }
-        let begin = self.auto.as_ref().and_then(|auto| auto.begin(to));
-        let (fallback, has_motion) = self.render_by(path, scene, views, to)?;
-        if let Some(auto) = &mut self.auto {
-            auto.end(fallback.is_none().then_some(path), begin, to);
-        }
-        Ok(FrameReport { fallback, has_motion, has_depth })
-    }
-
-    /// Renders all layers in one of two ways; by two renders instead of synthesis while most of the view is too near.
-    /// Returns this reason, and whether motion vectors were written.
-    fn render_by(
-        &mut self,
-        path: StereoPath,
-        scene: &mut PreparedScene,
-        views: &StereoViews,
-        to: &LayerTargets,
-    ) -> Result<(Option<FallbackReason>, bool), StereoError> {
-        if path == StereoPath::TwoViews {
-            return Ok((None, self.two_renders()?.render(scene, views, to, None)?));
-        }
-        self.fallback.prepare(&scene.renderer)?;
-        let fallback = self.fallback.of_content();
-        if fallback.is_some() {
-            self.two_renders()?;
-        }
-        let methods = self.both.as_mut().filter(|_| fallback.is_some()).unwrap_or(&mut self.chosen);
-        let has_motion = methods.render(scene, views, to, self.fallback.near())?;
-        Ok((fallback, has_motion))
+    fn take_images(&mut self) -> Result<StereoImages, GlError> {
+        self.images.take().map_or_else(|| StereoImages::new(&self.gl), Ok)
     }
 
     /// Returns two renders, made on the first call.
