@@ -104,7 +104,7 @@ fn the_files_of_all_shards_are_one_run() {
     succeed(at, &format!("report {} {} --out parts", parts[0], parts[1]));
     succeed(at, "report whole.jsonl --out whole");
     let tables = |folder: &str| -> Vec<String> {
-        let text = fs::read_to_string(at.join(folder).join("summary.md")).unwrap();
+        let text = fs::read_to_string(at.join(folder).join("report.md")).unwrap();
         text.lines().filter(|line| line.starts_with('|')).map(String::from).collect()
     };
     assert!(tables("parts").len() > 3);
@@ -234,7 +234,7 @@ fn guard_bands_and_estimates_are_measured_and_reported() {
     }
 
     succeed(at, "report both.jsonl --out out");
-    let results = fs::read_to_string(at.join("out/results.md")).unwrap();
+    let results = fs::read_to_string(at.join("out/report.md")).unwrap();
     let (guard_band, shader_cost) = results.split_once("## Shader cost").expect("a section of each suite");
     assert!(guard_band.contains("## Guard band"), "{results}");
     for (section, rows) in [(guard_band, &bands[..]), (shader_cost, &devices)] {

@@ -31,7 +31,7 @@ fn no_output_replaces_an_input() {
             "log.txt",
             "rating,v=1,participant=P1,trial=1,method=yoro,pipeline=gather,scene=street,question=q,value=3.0\n",
         ),
-        ("results.md", "{}\n"),
+        ("report.md", "{}\n"),
         ("data/prototype/group/000000.json", "[{\"position\": [0, 1.6, 2], \"target\": [0, 1.2, 0]}]"),
     ] {
         fs::write(at.join(name), text).unwrap();
@@ -48,7 +48,7 @@ fn no_output_replaces_an_input() {
         ("study collect log.txt --plan p.csv --out p.csv", "p.csv is read"),
         ("study analyse study.json --out .", "study.json is read"),
         ("device logcat log.txt --out .", "log.txt is there already"),
-        ("report results.md --out .", "results.md is read, so the report's results.md"),
+        ("report report.md --out .", "report.md is read, so the report"),
         ("bench scenes --path p.csv --out p.csv", "p.csv is read, so the results"),
         (
             "dataset prototype --groups 1 --size 16 --out data --path data/prototype/group/000000.json",

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use image::{Rgb, RgbImage};
 
-use crate::browser::{Browser, check_page};
+use crate::browser::{Browser, check_report_with_pictures};
 use crate::program::{run, succeed};
 
 const HEADER: &str = r#"{"record":"header","yoro_bench":1,"suites":["scenes"],"quick":true,"machine":{"cpu":"a CPU","cores":2,"os":"Linux","gl_renderer":"llvmpipe","gl_version":"OpenGL ES 3.2","yoro":"0.1.0","date":"2026-01-01T00:00:00Z","command":"yoro bench scenes"},"pass_clock":"finish","parameters":[{"name":"dominant eye","value":"right"}]}"#;
@@ -32,12 +32,12 @@ fn the_page_is_shown_in_a_browser() {
     }
     let stdout = succeed(at, "report run.jsonl --out out").stdout;
     assert!(stdout.contains("out/report.html"), "{stdout}");
-    let results = fs::read_to_string(at.join("out/results.md")).unwrap();
+    let results = fs::read_to_string(at.join("out/report.md")).unwrap();
     for needed in ["| 0.60 |", "32.50 / 0.9700", "20.00 / 0.5000", "29.79 / 0.9697", "no GL_OVR_multiview2"] {
         assert!(results.contains(needed), "{needed}: {results}");
     }
     if let Some(mut browser) = Browser::start() {
-        check_page(&mut browser, &at.join("out/report.html"));
+        check_report_with_pictures(&mut browser, &at.join("out/report.html"));
     }
 }
 
@@ -47,7 +47,7 @@ fn measurements_of_bench_are_reported() {
     let at = dir.path();
     succeed(at, "bench stream --quick --scene prototype --size 64x64 --out b.jsonl");
     succeed(at, "report b.jsonl");
-    let results = fs::read_to_string(at.join("out/results.md")).unwrap();
+    let results = fs::read_to_string(at.join("out/report.md")).unwrap();
     for needed in ["one eye and depth, QP 20", "same image, not encoded", "the paper's -39.6 %"] {
         assert!(results.contains(needed), "{needed}: {results}");
     }

@@ -45,7 +45,7 @@ fn a_measurement_is_reported() {
         .unwrap();
     drop(page);
     succeed(folder.path(), "report web.jsonl");
-    let results = std::fs::read_to_string(folder.path().join("out/results.md")).unwrap();
+    let results = std::fs::read_to_string(folder.path().join("out/report.md")).unwrap();
     for part in ["prototype", "yoro-gather", "shading-reprojection", "multiview"] {
         assert!(results.contains(part), "{part}: {results}");
     }

@@ -170,7 +170,7 @@ impl Subcommand for BenchArgs {
         bar.finish_and_clear();
         let results = bench::Results::read(&out)?;
         if self.frame {
-            print!("{}", BenchReport::new(vec![results])?.to_markdown());
+            print!("{}", BenchReport::new(vec![results])?.report().to_markdown());
         } else {
             print!("{}", bench::text(&results));
         }

@@ -5,16 +5,16 @@ use std::path::PathBuf;
 use super::Subcommand;
 use super::outputs::Files;
 use yoro_bench::bench::Results;
-use yoro_bench::report::bench::{self, BenchReport};
+use yoro_bench::report::bench::BenchReport;
 use yoro_files as files;
 
-/// Turn results of `yoro bench` into a self-contained page, Markdown tables and figures
+/// Turn results of `yoro bench` into a self-contained page and Markdown tables
 #[derive(clap::Args, Clone, Debug)]
 pub struct ReportArgs {
     /// Result files (JSON lines) of `yoro bench`; suites measured on several machines stand side by side
     #[arg(required = true, value_name = "FILE.jsonl")]
     files: Vec<PathBuf>,
-    /// Folder for report.html, results.md (all tables) and summary.md (the main ones)
+    /// Folder for report.html and report.md
     #[arg(long, default_value = "out", value_name = "FOLDER")]
     out: PathBuf,
 }
@@ -23,8 +23,8 @@ impl Subcommand for ReportArgs {
     fn files(&self) -> anyhow::Result<Files> {
         let mut files = Files::default();
         files.read(&self.files);
-        for name in bench::FILES {
-            files.write(self.out.join(name), format!("the report's {name}"));
+        for path in BenchReport::files(&self.out).paths() {
+            files.write(path, "the report");
         }
         Ok(files)
     }
@@ -35,10 +35,7 @@ impl Subcommand for ReportArgs {
         let report = BenchReport::new(results)?;
         // Drawing figures takes a while, so that a folder that cannot be created is reported first.
         files::create_folder(&self.out)?;
-        let written = report.write(&self.out)?;
-        println!("page:    {}", written.page.display());
-        println!("tables:  {}", written.results.display());
-        println!("summary: {}", written.summary.display());
+        print!("{}", report.write(&self.out)?);
         Ok(())
     }
 }

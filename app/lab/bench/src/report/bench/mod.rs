@@ -1,30 +1,20 @@
-//! The report of `yoro bench`: result files as one self-contained page and as Markdown.
+//! The report of `yoro bench`: what its result files say, suite by suite.
 
 mod data;
 mod sections;
 #[cfg(test)]
 mod tests;
 
-use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-
-use minijinja::context;
+use std::path::Path;
 
 use crate::bench::{Results, picture_folder};
+use crate::machine::Machine;
 use crate::report::error::ReportError;
-use crate::report::page::{PICTURE_BUDGET, Pictures};
+use crate::report::page;
 use crate::report::run::{QUALITY_METHOD, Viewpoint};
 use data::Suite;
-use sections::Section;
 use yoro::eyes::Eye;
-use yoro_files as files;
-use yoro_report::page::{self, Template};
-
-const TEMPLATE: Template =
-    Template { name: "bench.html.j2", text: include_str!("../templates/bench.html.j2") };
-
-/// The page, all tables, and the main tables.
-pub const FILES: [&str; 3] = ["report.html", "results.md", "summary.md"];
+use yoro_report::{Report, ReportFiles, Section, Text};
 
 /// The heading of the page.
 const TITLE: &str = "yoro: every method side by side";
@@ -44,23 +34,12 @@ struct Pictured {
 }
 
 /// Explains the marks by which the paper's figures are recognized.
-const PAPERS_MARK: &str = "What is *in italics*, hollow or dashed is the paper's (\"You Only Render Once\", MobiSys '25): \
-its own scenes, six phones and a Quest 2.";
+const PAPERS_MARK: &str = "Every method side by side, in the paper's order of experiments. What is hollow, dashed or in italics is the \
+paper's (\"You Only Render Once\", MobiSys '25): its own scenes, six phones and a Quest 2.";
 
 /// Explains how frame times are measured; printed wherever they are shown.
 const TIME_METHOD: &str = "Frame times: wall clock of a whole stereo frame up to glFinish. Methods take turns within \
 each round, so that ratios pair frames of the same round; means of ratios over scenes are geometric.";
-
-/// The files that were written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Written {
-    /// The page.
-    pub page: PathBuf,
-    /// All tables, in the order of the page.
-    pub results: PathBuf,
-    /// The first table of each experiment, for a README.
-    pub summary: PathBuf,
-}
 
 impl BenchReport {
     /// Combines files and loads the pictures beside them.
@@ -79,84 +58,30 @@ impl BenchReport {
         Ok(BenchReport { files, suites, pictures })
     }
 
-    /// Returns the self-contained page.
-    ///
-    /// # Errors
-    /// [`ReportError`] if a figure or a picture cannot be made.
-    pub fn to_html(&self) -> Result<String, ReportError> {
-        let viewpoints: Vec<&[Viewpoint]> =
-            self.pictures.iter().map(|pictured| std::slice::from_ref(&pictured.viewpoint)).collect();
-        let pictures = Pictures::encode(&viewpoints, PICTURE_BUDGET)?;
-        let sections = sections::sections(&self.suites);
-        let section = |(suite, section): &(&Suite, Section)| -> Result<minijinja::Value, ReportError> {
-            Ok(context! {
-                id => &section.id,
-                title => &section.title,
-                where => self.place(suite),
-                intro => &section.intro,
-                figures => page::figures(&section.figures)?,
-                tables => &section.tables,
-                command => &suite.header.machine.command,
-                date => &suite.header.machine.date,
-            })
-        };
-        let page = context! {
-            sections => sections.iter().map(section).collect::<Result<Vec<_>, _>>()?,
-            quality_method => QUALITY_METHOD,
-            time_method => TIME_METHOD,
-            picture_note => pictures.note,
-            scenes => self
-                .pictures
-                .iter()
-                .zip(pictures.scenes)
-                .map(|(pictured, viewpoints)| context! {
-                    name => &pictured.name,
-                    note => &pictured.note,
-                    viewpoints => viewpoints,
-                })
-                .collect::<Vec<_>>(),
-            runs => self
-                .files
-                .iter()
-                .map(|file| context! {
-                    file => file_name(&file.path),
-                    machine => &file.header.machine,
-                    parameters => &file.header.parameters,
-                })
-                .collect::<Vec<_>>(),
-        };
-        Ok(page::fill(TEMPLATE, TITLE, page)?)
-    }
-
-    /// Returns all tables.
-    pub fn to_markdown(&self) -> String {
-        let mut out = format!("{PAPERS_MARK}\n");
-        for (suite, section) in sections::sections(&self.suites) {
-            self.heading(&mut out, suite, &section);
-            for table in &section.tables {
-                let _ = writeln!(out, "{}", table.markdown());
-            }
-            source(&mut out, suite);
+    /// Returns the report.
+    pub fn report(&self) -> Report {
+        let mut sections = Vec::new();
+        for (suite, mut section) in sections::sections(&self.suites) {
+            let Machine { command, cpu, cores, gl_renderer, date, .. } = &suite.header.machine;
+            section.text(Text::quiet(format!("`{command}` on {cpu}, {cores} cores, {gl_renderer}, {date}.")));
+            section.place = self.place(suite).unwrap_or_default();
+            sections.push(section);
         }
-        out
-    }
-
-    /// Returns the first table of each experiment.
-    pub fn to_summary(&self) -> String {
-        let mut out = String::new();
-        for (suite, section) in sections::sections(&self.suites) {
-            if let Some(table) = section.tables.first() {
-                self.heading(&mut out, suite, &section);
-                let _ = writeln!(out, "{}", table.markdown());
-                source(&mut out, suite);
-            }
+        let mut pictures = Section::new("Pictures", "");
+        for Pictured { name, note, viewpoint } in &self.pictures {
+            pictures.pictures(page::pictures(viewpoint, name.clone(), note.clone()));
         }
-        out
-    }
-
-    fn heading(&self, out: &mut String, suite: &Suite, section: &Section) {
-        let place = self.place(suite).map(|place| format!(" ({place})")).unwrap_or_default();
-        let _ = writeln!(out, "\n## {}{place}\n\n{}\n", section.title, section.intro);
+        if !pictures.is_empty() {
+            sections.push(pictures);
+        }
+        let mut measured = Section::new("How it was measured", QUALITY_METHOD);
+        measured.text(TIME_METHOD);
+        for file in &self.files {
+            let name = file.path.file_name().unwrap_or_default().to_string_lossy();
+            measured.table(page::machine(&name, &file.header.machine, &file.header.parameters));
+        }
+        sections.push(measured);
+        Report { title: TITLE.into(), summary: vec![PAPERS_MARK.into()], sections }
     }
 
     /// Returns the GL renderer if several machines measured the same suite, with its version if only that differs.
@@ -172,39 +97,24 @@ impl BenchReport {
         }
     }
 
-    /// Writes [`FILES`] into a folder.
+    /// Returns the files that [`BenchReport::write`] writes into `folder`.
+    pub fn files(folder: &Path) -> ReportFiles {
+        ReportFiles::of(folder, "report", false)
+    }
+
+    /// Writes the page and its tables into `folder`.
     ///
     /// # Errors
     /// [`ReportError`]; existing files are then unchanged.
-    pub fn write(&self, folder: &Path) -> Result<Written, ReportError> {
-        // Everything is made before anything is written.
-        let texts = [self.to_html()?, self.to_markdown(), self.to_summary()];
-        let [page, results, summary] = FILES.map(|name| folder.join(name));
-        for (path, text) in [&page, &results, &summary].into_iter().zip(&texts).rev() {
-            files::write(path, text.as_bytes())?;
-        }
-        Ok(Written { page, results, summary })
+    pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
+        Ok(self.report().write(folder, "report", None)?)
     }
-}
-
-/// Writes how a suite was measured: command, machine, date.
-fn source(out: &mut String, suite: &Suite) {
-    let machine = &suite.header.machine;
-    let _ = writeln!(
-        out,
-        "`{}` on {}, {} cores, {}, {}.",
-        machine.command, machine.cpu, machine.cores, machine.gl_renderer, machine.date
-    );
 }
 
 /// Returns the renderer and version of GL with which a suite was measured.
 fn gl(suite: &Suite) -> (&str, &str) {
     let machine = &suite.header.machine;
     (&machine.gl_renderer, &machine.gl_version)
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Loads the pictures beside a file, in the order of its settings.

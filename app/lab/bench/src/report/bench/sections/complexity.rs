@@ -1,18 +1,16 @@
 //! Frame time by number of triangles.
 
-use super::cells::{CONVENTIONAL, PAPERS, cell, milliseconds};
-use super::section::Section;
+use super::cells::{CONVENTIONAL, cell, milliseconds, papers};
 use super::tables::{push_refusals, sweep_table};
 use crate::bench::record::metric;
 use crate::report::bench::data::Suite;
-use yoro_report::grid::{Cell, Table};
-use yoro_report::paper::{self, COMPLEXITY};
-use yoro_report::plot::{Axis, Panel, Series};
+use yoro_report::paper::PAPER;
 use yoro_report::stats::{geometric_mean, line_through, mean};
 use yoro_report::text::{fixed, short_count};
+use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
 
-/// The paper's frame times of conventional rendering, for the triangles of [`COMPLEXITY`].
-const PAPERS_CONVENTIONAL: [f64; 9] = COMPLEXITY.systems[1].1;
+/// The paper's systems.
+const PAPERS: [&str; 4] = ["yoro-paper", CONVENTIONAL, "hybrid", "instanced"];
 
 /// Milliseconds or ratios by millions of triangles.
 type Curve = Vec<(f64, f64)>;
@@ -20,28 +18,36 @@ type Curve = Vec<(f64, f64)>;
 /// Returns the section of the suite `complexity`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
-        "complexity",
         "Complexity",
         "Frame time against the number of triangles of one scene. The slope is the cost of another million triangles, \
          by least squares. Synthesis costs the same in every scene.",
     );
-    let x = || Axis::new("triangles, millions").from_zero();
-    let y = || Axis::new("frame time, ms").from_zero();
-    let time_curves = Panel::Curves { x: x(), y: y(), series: series(suite, times) };
-    section.figure("ms", "Frame time here", "Medians on this machine.", time_curves);
-    let curves = Panel::Curves { x: x(), y: y(), series: papers_series(|_, ms| ms) };
-    section.figure("paper-ms", "The paper's frame time", "Means over its devices, its own scene.", curves);
-    let mut series_of_ratios = papers_series(|i, ms| ms / PAPERS_CONVENTIONAL[i]);
-    series_of_ratios.extend(series(suite, ratios));
-    series_of_ratios.retain(|series| series.method != CONVENTIONAL);
-    let y = Axis::new("frame time / conventional").baseline(1.0);
-    let curves = Panel::Curves { x: x(), y, series: series_of_ratios };
-    section.figure(
-        "ratio",
+    let plot = |title, caption, y| {
+        Plot::curves(title, Axis::new("triangles, millions").from_zero(), y).caption(caption)
+    };
+    let ms = || Axis::new("frame time, ms").from_zero();
+    let mut here = plot("Frame time here", "Medians on this machine.", ms());
+    let mut paper = plot("The paper's frame time", "Means over its devices, its own scene.", ms());
+    let mut over_two = plot(
         "Frame time over two full renders",
         "The line is conventional rendering.",
-        curves,
+        Axis::new("frame time / conventional").baseline(1.0),
     );
+    for name in suite.measured(metric::FRAME_MS) {
+        here.curve(Entry::ours(name), times(suite, name));
+        if name != CONVENTIONAL {
+            over_two.curve(Entry::ours(name), ratios(suite, name));
+        }
+    }
+    for name in PAPERS {
+        paper.curve(papers(name), paper_times(name));
+        if name != CONVENTIONAL {
+            over_two.curve(papers(name), paper_ratios(name));
+        }
+    }
+    section.plot(here);
+    section.plot(paper);
+    section.plot(over_two);
     section.table(slopes(suite));
     section.table(sweep_table(suite, "Median frame time, ms", metric::FRAME_MS, "triangles", |point| {
         short_count(point as u64)
@@ -61,32 +67,16 @@ fn ratios(suite: &Suite, name: &str) -> Curve {
     curve.into_iter().map(|(triangles, ratio)| (triangles / 1e6, ratio)).collect()
 }
 
-/// Returns the curve of a series of the paper's values, one for each of its sizes.
-fn papers(values: impl IntoIterator<Item = f64>) -> Curve {
-    COMPLEXITY.triangles.into_iter().zip(values).collect()
+/// Returns the paper's frame times of the system that a method corresponds to; none if it has none.
+fn paper_times(name: &str) -> Curve {
+    let of = |name: &str| PAPER.complexity.get(name).into_iter().flatten().copied();
+    of("triangles").zip(of(name)).collect()
 }
 
-/// Returns a curve for each of the paper's systems. `value` maps each time and its index to a value.
-fn papers_series(value: impl Fn(usize, f64) -> f64) -> Vec<Series> {
-    let series = COMPLEXITY.systems.iter().map(|(method, times)| Series {
-        method: (*method).into(),
-        papers: true,
-        label: format!("{PAPERS}{}", paper::system(method)),
-        points: papers(times.iter().enumerate().map(|(i, ms)| value(i, *ms))),
-    });
-    series.collect()
-}
-
-/// Returns a curve for each contender, with the first on top.
-fn series(suite: &Suite, curve: fn(&Suite, &str) -> Curve) -> Vec<Series> {
-    let contenders = suite.measured(metric::FRAME_MS);
-    let series = contenders.iter().rev().map(|name| Series {
-        method: (*name).into(),
-        papers: false,
-        label: (*name).into(),
-        points: curve(suite, name),
-    });
-    series.collect()
+/// Returns the paper's frame times of a system divided by those of conventional rendering.
+fn paper_ratios(name: &str) -> Curve {
+    let both = paper_times(name).into_iter().zip(paper_times(CONVENTIONAL));
+    both.map(|((triangles, ms), (_, conventional))| (triangles, ms / conventional)).collect()
 }
 
 /// Returns a table of the cost of an additional million triangles, for each contender and for the paper's systems.
@@ -104,16 +94,13 @@ fn slopes(suite: &Suite) -> Table {
     let mut table = Table::new("Slope and ratio", &columns);
     let slope_of = |curve: &Curve| line_through(curve).map(|(_, slope)| slope);
     let base = slope_of(&times(suite, CONVENTIONAL));
-    let paper_base = slope_of(&papers(PAPERS_CONVENTIONAL));
+    let paper_base = slope_of(&paper_times(CONVENTIONAL));
     let share = |slope: Option<f64>, base: Option<f64>| fixed(slope.zip(base).map(|(s, b)| s / b), 3);
     for name in suite.measured(metric::FRAME_MS) {
         let fit = line_through(&times(suite, name));
         let slope = fit.map(|(_, slope)| slope);
-        let system = COMPLEXITY.systems.iter().find(|(method, _)| *method == name);
-        let paper_slope = system.and_then(|(_, times)| slope_of(&papers(*times)));
-        let paper_ratio = system.and_then(|(_, times)| {
-            mean(times.iter().zip(PAPERS_CONVENTIONAL).map(|(ms, conventional)| ms / conventional))
-        });
+        let paper_slope = slope_of(&paper_times(name));
+        let paper_ratio = mean(paper_ratios(name).into_iter().map(|(_, ratio)| ratio));
         let ratios = ratios(suite, name).into_iter().map(|(_, ratio)| ratio);
         table.push(vec![
             Cell::plain(name),

@@ -1,36 +1,33 @@
 //! Flicker from frame to frame.
 
-use super::cells::CONVENTIONAL;
-use super::dots::scene_dots;
-use super::section::Section;
+use super::cells::{CONVENTIONAL, scene_plot};
 use super::tables::{means_table, scene_table};
 use crate::bench::record::metric;
-use crate::report::bench::data::{SettingData, Suite};
-use yoro_report::grid::Cell;
-use yoro_report::plot::Axis;
+use crate::report::bench::data::Suite;
 use yoro_report::text::fixed;
+use yoro_report::{Axis, Cell, Section};
 
 /// Returns the section of the suite `flicker`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
-        "flicker",
         "Flicker",
         "Frame-to-frame change of the synthesized eye that a real render does not have, along part of the camera path \
          at walking pace. The paper does not measure this.",
     );
-    for (id, title, name) in [
-        ("all", "Flicker of all pixels", metric::FLICKER),
-        ("holes", "Flicker in holes", metric::FLICKER_HOLES),
-        ("edges", "Flicker at edges", metric::FLICKER_EDGES),
+    for (title, name) in [
+        ("Flicker of all pixels", metric::FLICKER),
+        ("Flicker in holes", metric::FLICKER_HOLES),
+        ("Flicker at edges", metric::FLICKER_EDGES),
     ] {
-        let panel = scene_dots(
+        let plot = scene_plot(
             suite,
+            title,
             Axis::new("flicker, of 255").from_zero(),
             &suite.measured(name),
             |setting, contender| setting.find(contender)?.mean(name),
             |_| Vec::new(),
         );
-        section.figure(id, title, "Less is better.", panel);
+        section.plot(plot.caption("Less is better."));
     }
     let columns = [
         ("all", metric::FLICKER, 3),
@@ -53,9 +50,8 @@ pub fn section(suite: &Suite) -> Section {
         table.push_first(cells);
     }
     section.table(table);
-    let of_scenes = ("", |_: &SettingData| None, None);
     let contenders = suite.measured(metric::FLICKER);
-    let mut table = scene_table(
+    section.table(scene_table(
         suite,
         "Flicker of all pixels / in holes",
         &contenders,
@@ -65,9 +61,7 @@ pub fn section(suite: &Suite) -> Section {
             Some(format!("{:.2} / {holes}", measured.mean(metric::FLICKER)?))
         },
         |name| fixed(suite.mean(name, metric::FLICKER), 2),
-        of_scenes,
-    );
-    table.drop_last_column();
-    section.table(table);
+        None,
+    ));
     section
 }

@@ -1,17 +1,15 @@
 //! Eyes with all pixels only where they look.
 
 use super::cells::cell;
-use super::section::Section;
 use crate::bench::record::metric;
 use crate::report::bench::data::{CONVENTIONAL, MONO, SettingData, Suite};
-use yoro_report::grid::{Cell, Table};
 use yoro_report::stats::{geometric_mean, mean};
 use yoro_report::text::fixed;
+use yoro_report::{Cell, Section, Table};
 
 /// Returns the section of the suite `foveation`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
-        "foveation",
         "Foveation",
         "Each eye in two levels, an inset of all pixels around its axis and a wide view of fewer, by two renders and by synthesis of \
          each level: all pixels to 30 (low) or 20 degrees (medium, high), and half (low, medium) or a third of them along each axis \

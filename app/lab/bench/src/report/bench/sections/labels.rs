@@ -1,16 +1,15 @@
 //! Suites whose settings have a label: the shading style, or the number of samples.
 
-use super::cells::{CONVENTIONAL, cell};
-use super::dots::papers_mark;
-use super::section::Section;
+use std::collections::BTreeMap;
+
+use super::cells::{CONVENTIONAL, cell, papers};
 use super::sweeps::QUALITY_FIGURES;
 use super::tables::{metric_table, push_refusals};
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_report::grid::{Cell, Table};
-use yoro_report::paper;
-use yoro_report::plot::{Axis, DotRow, Mark, Panel};
+use yoro_report::paper::PAPER;
 use yoro_report::stats::mean;
+use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
 
 /// What differs between sections of this kind.
 struct Labels {
@@ -20,8 +19,8 @@ struct Labels {
     title: &'static str,
     /// The title of the table with all settings.
     details: &'static str,
-    /// The paper's SSIM and PSNR in dB by label; empty if it has none.
-    papers: &'static [(&'static str, f64, f64)],
+    /// The paper's SSIM and PSNR in dB by label, if it has any.
+    papers: Option<&'static BTreeMap<String, [f64; 2]>>,
     /// True if frame times were measured.
     timed: bool,
 }
@@ -29,7 +28,6 @@ struct Labels {
 /// Returns the section of the suite `styles`.
 pub fn styles(suite: &Suite) -> Section {
     let section = Section::new(
-        "styles",
         "Shading styles",
         "The same synthesis under five styles of shading. In the paper, each style is a separate scene.",
     );
@@ -37,7 +35,7 @@ pub fn styles(suite: &Suite) -> Section {
         column: "<style",
         title: "PSNR in dB / SSIM, means over the scenes",
         details: "Every scene and style in full",
-        papers: &paper::STYLES,
+        papers: Some(&PAPER.styles),
         timed: false,
     };
     fill(section, suite, &labels)
@@ -46,7 +44,6 @@ pub fn styles(suite: &Suite) -> Section {
 /// Returns the section of the suite `anti-aliasing`.
 pub fn anti_aliasing(suite: &Suite) -> Section {
     let section = Section::new(
-        "anti-aliasing",
         "Anti-aliasing",
         "Each synthesized eye against the same eye rendered with as many samples per pixel. Synthesis takes the mean \
          colour and the nearest depth of each pixel's samples.",
@@ -55,7 +52,7 @@ pub fn anti_aliasing(suite: &Suite) -> Section {
         column: "<samples per pixel",
         title: "PSNR in dB / SSIM / frame time over two renders, means over the scenes",
         details: "Every scene in full",
-        papers: &[],
+        papers: None,
         timed: true,
     };
     fill(section, suite, &labels)
@@ -70,26 +67,26 @@ fn fill(mut section: Section, suite: &Suite, labels: &Labels) -> Section {
     let value = |label: &str, contender: &str, name: &str| {
         mean(labelled(label).iter().filter_map(|setting| setting.find(contender)?.mean(name)))
     };
-    let paper_of = |label: &str| labels.papers.iter().find(|(name, ..)| *name == label);
+    let paper_of = |label: &str| labels.papers.and_then(|papers| papers.get(label));
     for (name, axis, caption) in QUALITY_FIGURES {
-        let rows = suite.labels().into_iter().map(|label| {
-            let paper = paper_of(label).and_then(|(_, ssim, psnr)| match name {
+        let mut plot = Plot::rows(axis, Axis::new(axis)).caption(format!("{caption} Means over the scenes."));
+        for label in suite.labels() {
+            for contender in &contenders {
+                let value = value(label, contender, name).unwrap_or(f64::NAN);
+                plot.mark(label, Entry::ours(*contender), value);
+            }
+            let paper = paper_of(label).and_then(|[ssim, psnr]| match name {
                 metric::SSIM => Some(*ssim),
                 metric::PSNR => Some(*psnr),
                 _ => None,
             });
-            let paper = paper.map(|value| papers_mark("yoro-paper", value));
-            let ours = contenders.iter().rev().filter_map(|contender| {
-                Some(Mark::new(*contender, *contender, value(label, contender, name)?))
-            });
-            DotRow { label: label.into(), marks: paper.into_iter().chain(ours).collect() }
-        });
-        let panel = Panel::Dots { value: Axis::new(axis), rows: rows.collect() };
-        section.figure(name, axis, &format!("{caption} Means over the scenes."), panel);
+            plot.mark(label, papers("yoro-paper"), paper.unwrap_or(f64::NAN));
+        }
+        section.plot(plot);
     }
     let mut columns = vec![labels.column];
     columns.extend(&contenders);
-    if !labels.papers.is_empty() {
+    if labels.papers.is_some() {
         columns.push("the paper's YORO");
     }
     let mut table = Table::new(labels.title, &columns);
@@ -105,8 +102,8 @@ fn fill(mut section: Section, suite: &Suite, labels: &Labels) -> Section {
             let ratio = ratio.map_or_else(String::new, |ratio| format!(" / {ratio:.2}"));
             cells.push(cell(name, pair.map(|(psnr, ssim)| format!("{psnr:.2} / {ssim:.4}{ratio}"))));
         }
-        if !labels.papers.is_empty() {
-            let paper = paper_of(label).map(|(_, ssim, psnr)| format!("{psnr:.1} / {ssim:.3}"));
+        if labels.papers.is_some() {
+            let paper = paper_of(label).map(|[ssim, psnr]| format!("{psnr:.1} / {ssim:.3}"));
             cells.push(Cell::paper(paper));
         }
         table.push(cells);

@@ -1,27 +1,24 @@
-//! The report's sections, one file per experiment: figures with the paper's curves beside ours, and tables.
+//! The report's sections, one file per experiment: plots with the paper's curves beside ours, and tables.
 
 mod cells;
 mod complexity;
-mod dots;
 mod flicker;
 mod foveation;
-mod frame_cost;
 mod frame_time;
 mod labels;
 mod other;
 mod overhead;
 mod patchers;
 mod quality;
-mod section;
 mod stream;
 mod sweeps;
 mod tables;
 
 use crate::bench;
 use crate::report::bench::data::Suite;
+use yoro_report::Section;
 
 pub use cells::{CONVENTIONAL, MONO};
-pub use section::Section;
 
 type MakeSection = fn(&Suite) -> Section;
 
@@ -52,25 +49,9 @@ pub fn sections(suites: &[Suite]) -> Vec<(&Suite, Section)> {
         let of_kind = suites.iter().filter(|suite| suite.name == kind.name());
         sections.extend(of_kind.map(|suite| (suite, make(suite))));
     }
-    let frames = suites.iter().filter(|suite| suite.name == bench::FRAME_SUITE);
-    sections.extend(frames.map(|suite| (suite, frame_cost::section(suite))));
-    let known = |suite: &&Suite| {
-        suite.name == bench::FRAME_SUITE || ORDER.iter().any(|(kind, _)| kind.name() == suite.name)
-    };
-    sections.extend(suites.iter().filter(|suite| !known(suite)).map(|suite| (suite, other::section(suite))));
-    sections.retain(|(_, section)| !section.figures.is_empty() || !section.tables.is_empty());
-    // The same experiment on another machine needs a different anchor.
-    let mut seen: Vec<String> = Vec::new();
-    for (_, section) in &mut sections {
-        let before = seen.iter().filter(|id| **id == section.id).count();
-        seen.push(section.id.clone());
-        if before > 0 {
-            let id = format!("{}-{}", section.id, before + 1);
-            for figure in &mut section.figures {
-                figure.id = figure.id.replacen(&section.id, &id, 1);
-            }
-            section.id = id;
-        }
-    }
+    let is_known = |suite: &&Suite| ORDER.iter().any(|(kind, _)| kind.name() == suite.name);
+    let others = suites.iter().filter(|suite| !is_known(suite));
+    sections.extend(others.map(|suite| (suite, other::section(suite))));
+    sections.retain(|(_, section)| !section.is_empty());
     sections
 }

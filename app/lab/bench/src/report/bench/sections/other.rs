@@ -1,19 +1,18 @@
 //! Suites without a section of their own.
 
 use super::cells::cell;
-use super::section::Section;
 use super::tables::push_refusals;
 use crate::bench;
 use crate::report::bench::data::Suite;
-use yoro_report::grid::{Cell, Table};
 use yoro_report::stats::unique;
-use yoro_report::text::{fixed, slug};
+use yoro_report::text::fixed;
+use yoro_report::{Cell, Section, Table};
 
 /// Returns a section with every metric of a suite.
 pub fn section(suite: &Suite) -> Section {
     let known = bench::Suite::EACH.iter().find(|known| known.name() == suite.name);
     let intro = known.map_or_else(String::new, |known| format!("{}.", known.about()));
-    let mut section = Section::new(&slug(&suite.name), &title(&suite.name), &intro);
+    let mut section = Section::new(title(&suite.name), intro);
     let measured = suite.settings.iter().flat_map(|setting| &setting.contenders);
     let metrics = unique(measured.flat_map(|measured| measured.metrics()));
     let mut columns = vec!["<setting", "<method"];

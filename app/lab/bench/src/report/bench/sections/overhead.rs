@@ -1,66 +1,59 @@
 //! CPU time and memory.
 
-use super::cells::{CONVENTIONAL, cell};
-use super::dots::scene_dots;
-use super::section::Section;
+use super::cells::{CONVENTIONAL, cell, paper_scene, scene_plot};
 use super::tables::means_table;
 use crate::bench::record::PassClock;
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_report::grid::{Cell, Table};
-use yoro_report::paper;
-use yoro_report::plot::Axis;
+use yoro_report::paper::{self, PaperScene};
 use yoro_report::stats::{mean, unique};
 use yoro_report::text::fixed;
+use yoro_report::{Axis, Cell, Section, Table};
 
 /// Returns the section on CPU time and memory of the suite `scenes`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
-        "overhead",
         "Overhead",
         "CPU time and memory of a stereo frame. The paper gives CPU load in percent and its applications' memory. \
          Power and temperature need a phone.",
     );
     let contenders = suite.measured(metric::CPU_MS);
     let others = suite.compared(metric::CPU_MS);
-    let papers = |value: fn(&paper::Overhead) -> [f64; 3]| {
+    let papers = |value: fn(&PaperScene) -> [f64; 3]| {
         move |setting: &SettingData| -> Vec<(&'static str, f64)> {
-            let scene = paper::SCENES.iter().position(|scene| scene.name == setting.stands_for());
-            let Some(scene) = scene else { return Vec::new() };
-            let values = value(&paper::OVERHEAD[scene]);
-            let ratios = paper::OVERHEAD_METHODS.iter().zip(values).map(|(name, v)| (*name, v / values[1]));
+            let Some(scene) = paper_scene(setting) else { return Vec::new() };
+            let values = value(scene);
+            let ratios = paper::SYSTEMS.iter().zip(values).map(|(name, v)| (*name, v / values[1]));
             ratios.filter(|(name, _)| *name != CONVENTIONAL).collect()
         }
     };
-    section.figure(
-        "cpu",
+    let plot = scene_plot(
+        suite,
         "CPU time over two full renders",
+        Axis::new("CPU time / conventional").baseline(1.0),
+        &others,
+        |setting, name| Some(setting.find(name)?.ratio(setting.conventional()?, metric::CPU_MS)?.median),
+        papers(|o| o.cpu),
+    );
+    section.plot(plot.caption(
         "CPU time of a stereo frame over all threads, including rasterization if the CPU rasterizes. The paper's: CPU \
          load over conventional rendering's.",
-        scene_dots(
-            suite,
-            Axis::new("CPU time / conventional").baseline(1.0),
-            &others,
-            |setting, name| Some(setting.find(name)?.ratio(setting.conventional()?, metric::CPU_MS)?.median),
-            papers(|o| o.cpu),
-        ),
-    );
-    section.figure(
-        "memory",
+    ));
+    let plot = scene_plot(
+        suite,
         "Memory over two full renders",
+        Axis::new("memory / conventional"),
+        &others,
+        |setting, name| {
+            let base = setting.conventional()?.mean(metric::MEMORY_MIB)?;
+            Some(setting.find(name)?.mean(metric::MEMORY_MIB)? / base)
+        },
+        papers(|o| o.memory),
+    );
+    section.plot(plot.caption(
         "Memory of the process, with the scene and one method's textures. The paper's: memory of its applications over \
          conventional rendering's.",
-        scene_dots(
-            suite,
-            Axis::new("memory / conventional"),
-            &others,
-            |setting, name| {
-                let base = setting.conventional()?.mean(metric::MEMORY_MIB)?;
-                Some(setting.find(name)?.mean(metric::MEMORY_MIB)? / base)
-            },
-            papers(|o| o.memory),
-        ),
-    );
+    ));
     let columns = [
         ("CPU time, ms", metric::CPU_MS, 1),
         ("memory, MiB", metric::MEMORY_MIB, 1),

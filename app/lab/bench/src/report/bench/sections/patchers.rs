@@ -1,20 +1,17 @@
 //! Patchers on the same reprojected images.
 
 use super::cells::{cell, milliseconds};
-use super::section::Section;
 use super::tables::{metric_table, push_refusals};
 use crate::bench::record::metric;
 use crate::report::bench::data::Suite;
-use yoro_report::grid::{Cell, Table};
-use yoro_report::paper;
-use yoro_report::plot::{Axis, DotRow, Mark, Panel};
+use yoro_report::paper::PAPER;
 use yoro_report::stats::mean;
 use yoro_report::text::fixed;
+use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
 
 /// Returns the section of the suite `patchers`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
-        "patchers",
         "Patchers",
         "How each patcher fills the holes of one reprojected image. The paper's times are from a phone, where its GAN \
          runs on the CPU.",
@@ -22,28 +19,32 @@ pub fn section(suite: &Suite) -> Section {
     let contenders = suite.measured(metric::SSIM);
     let paper_of = |name: &str| {
         let name = name.strip_prefix("patcher-").unwrap_or(name);
-        paper::PATCHERS.iter().find(|patcher| patcher.name == name)
+        PAPER.patchers.get(name)
     };
-    let dots = |axis: Axis, ours: &dyn Fn(&str) -> Option<f64>, papers: fn(&paper::PaperPatcher) -> f64| {
-        // Each patcher is a row; colours distinguish our figures from the paper's.
-        let rows = contenders.iter().map(|name| {
-            let paper =
-                paper_of(name).map(|patcher| Mark::papers("yoro-paper", "the paper's", papers(patcher)));
-            let ours = ours(name).map(|value| Mark::new("yoro-gather", "here", value));
-            DotRow { label: (*name).into(), marks: paper.into_iter().chain(ours).collect() }
-        });
-        Panel::Dots { value: axis, rows: rows.collect() }
-    };
-    let of_suite = |metric_name: &'static str| move |name: &str| suite.mean(name, metric_name);
-    let caption = "Means over the scenes. More is better.";
-    let panel = dots(Axis::new("PSNR, dB"), &of_suite(metric::PSNR), |p| p.psnr);
-    section.figure("psnr", "PSNR", caption, panel);
-    let panel = dots(Axis::new("SSIM, gaussian 11x11"), &of_suite(metric::SSIM), |p| p.ssim);
-    section.figure("ssim", "SSIM", caption, panel);
     let time = |name: &str| mean(suite.values(name, |measured| measured.median(metric::PATCH_MS)));
-    let panel = dots(Axis::new("patching time, ms").logarithmic(), &time, |p| p.ms);
-    section.figure("ms", "Time", "Of the patcher alone. Less is better.", panel);
-
+    let quality = "Means over the scenes. More is better.";
+    let of_suite = |metric_name: &'static str| move |name: &str| suite.mean(name, metric_name);
+    let plots: [(_, _, _, &dyn Fn(&str) -> Option<f64>); 3] = [
+        ("PSNR", Axis::new("PSNR, dB"), quality, &of_suite(metric::PSNR)),
+        ("SSIM", Axis::new("SSIM, gaussian 11x11"), quality, &of_suite(metric::SSIM)),
+        (
+            "Time",
+            Axis::new("patching time, ms").logarithmic(),
+            "Of the patcher alone. Less is better.",
+            &time,
+        ),
+    ];
+    for (i, (title, axis, caption, ours)) in plots.into_iter().enumerate() {
+        // Each patcher is a row; colours distinguish our figures from the paper's.
+        let mut plot = Plot::rows(title, axis).caption(caption);
+        for name in &contenders {
+            let here = Entry { label: "here".into(), ..Entry::ours("yoro-gather") };
+            plot.mark(name, here, ours(name).unwrap_or(f64::NAN));
+            let paper = paper_of(name).map_or(f64::NAN, |figures| figures[i]);
+            plot.mark(name, Entry::papers("yoro-paper", "the paper's"), paper);
+        }
+        section.plot(plot);
+    }
     let columns = [
         "<patcher",
         "PSNR, dB",
@@ -68,9 +69,9 @@ pub fn section(suite: &Suite) -> Section {
             cell(name, fixed(value(metric::HOLE_PSNR), 2)),
             cell(name, fixed(value(metric::HOLE_SSIM), 4)),
             cell(name, time(name).map(milliseconds)),
-            Cell::paper(fixed(paper.map(|p| p.psnr), 2)),
-            Cell::paper(fixed(paper.map(|p| p.ssim), 4)),
-            Cell::paper(paper.map(|p| milliseconds(p.ms))),
+            Cell::paper(fixed(paper.map(|p| p[0]), 2)),
+            Cell::paper(fixed(paper.map(|p| p[1]), 4)),
+            Cell::paper(paper.map(|p| milliseconds(p[2]))),
         ]);
     }
     push_refusals(&mut table, suite);

@@ -1,19 +1,16 @@
 //! Image quality.
 
-use super::cells::{paper_scene, psnr_ssim};
-use super::dots::scene_dots;
-use super::section::Section;
+use super::cells::{paper_scene, psnr_ssim, scene_plot};
 use super::sweeps::QUALITY_FIGURES;
-use super::tables::{means_table, metric_table, scene_table};
+use super::tables::{PaperColumn, means_table, metric_table, scene_table};
 use crate::bench::record::metric;
 use crate::report::bench::data::Suite;
-use yoro_report::grid::Table;
-use yoro_report::paper;
-use yoro_report::plot::Axis;
+use yoro_report::paper::{PAPER, PaperScene};
 use yoro_report::stats::mean;
 use yoro_report::text::fixed;
+use yoro_report::{Axis, Section, Table};
 
-fn paper_quality(scene: &paper::PaperScene, name: &str) -> Option<f64> {
+fn paper_quality(scene: &PaperScene, name: &str) -> Option<f64> {
     match name {
         metric::PSNR => Some(scene.psnr),
         metric::SSIM => Some(scene.ssim),
@@ -24,7 +21,6 @@ fn paper_quality(scene: &paper::PaperScene, name: &str) -> Option<f64> {
 /// Returns the section on quality of the suite `scenes`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
-        "quality",
         "Image quality",
         "The synthesized eye against a real render of the same eye. “mono” shows the dominant eye's image to both \
          eyes: the baseline for every other figure.",
@@ -41,21 +37,21 @@ pub fn section(suite: &Suite) -> Section {
         let psnr = fixed(suite.mean(name, metric::PSNR), 2);
         Some(format!("{} / {ssim:.4}", psnr.unwrap_or_else(|| "∞".into())))
     };
-    let average = paper::AVERAGE;
+    let average = &PAPER.average;
     let mut table = scene_table(
         suite,
         "PSNR in dB / SSIM",
         &contenders,
         |setting, name| psnr_ssim(setting.find(name)?),
         mean_of,
-        (
-            "the paper's YORO",
-            |setting| {
+        Some(PaperColumn {
+            head: "the paper's YORO",
+            text: &|setting| {
                 let scene = paper_scene(setting)?;
                 Some(format!("{}: {:.2} / {:.4}", scene.name, scene.psnr, scene.ssim))
             },
-            Some(format!("{:.2} / {:.4}", average.psnr, average.ssim)),
-        ),
+            mean: format!("{:.2} / {:.4}", average.psnr, average.ssim),
+        }),
     );
     table.note = "RGB; SSIM with a gaussian window 11x11. ∞: identical images.".into();
     section.table(table);
@@ -66,8 +62,9 @@ pub fn section(suite: &Suite) -> Section {
 
 fn quality_figures(section: &mut Section, suite: &Suite) {
     for (name, axis, caption) in QUALITY_FIGURES {
-        let panel = scene_dots(
+        let plot = scene_plot(
             suite,
+            axis,
             Axis::new(axis),
             &suite.compared(name),
             |setting, contender| setting.find(contender)?.mean(name),
@@ -76,7 +73,7 @@ fn quality_figures(section: &mut Section, suite: &Suite) {
                 value.map(|value| ("yoro-paper", value)).into_iter().collect()
             },
         );
-        section.figure(name, axis, caption, panel);
+        section.plot(plot.caption(caption));
     }
 }
 

@@ -1,19 +1,17 @@
 //! The bits of a stream, and the quality of what it shows some frames later.
 
 use super::cells::{cell, percent, psnr_ssim};
-use super::section::Section;
 use super::tables::push_refusals;
 use crate::bench::record::metric::{KBIT_S, SAVED};
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_report::grid::{Cell, Table};
-use yoro_report::paper;
+use yoro_report::paper::PAPER;
 use yoro_report::stats::mean;
 use yoro_report::text::fixed;
+use yoro_report::{Cell, Section, Table};
 
 /// Returns the section of the suite `stream`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
-        "stream",
         "Streaming",
         "Frames of a walking head (1.35 m/s, 72 frames a second) as `yoro serve` sends them, encoded by openh264 at one quantizer: one \
          eye and its depth, from which both eyes are made at the pose where they are shown; both eyes, turned to that pose; and both eyes \
@@ -50,7 +48,7 @@ fn bits(suite: &Suite) -> Table {
         table.push(cells);
     }
     push_refusals(&mut table, suite);
-    let papers = mean(paper::BANDWIDTH.iter().map(|(_, depth, stereo)| depth / stereo - 1.0));
+    let papers = mean(PAPER.scenes.iter().map(|scene| scene.kbit[0] / scene.kbit[1] - 1.0));
     table.note = format!(
         "Mean difference of one eye and depth here {}; the paper's {}. The paper names neither quantizer nor resolution.",
         mean(saved).map_or_else(|| "–".into(), |saved| percent(-saved / 100.0)),

@@ -3,9 +3,19 @@
 use super::cells::{cell, milliseconds};
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_report::grid::{Cell, Table};
 use yoro_report::stats::{mean, percentile};
 use yoro_report::text::{fixed, short_count};
+use yoro_report::{Cell, Table};
+
+/// A column of the paper's figures.
+pub struct PaperColumn<'a> {
+    /// Its head.
+    pub head: &'a str,
+    /// The text beside a setting.
+    pub text: &'a dyn Fn(&SettingData) -> Option<String>,
+    /// The text beside the means.
+    pub mean: String,
+}
 
 /// Returns a table with a row for each setting and a column for each contender, followed by the means and by the
 /// contenders that were not measured.
@@ -15,11 +25,11 @@ pub fn scene_table(
     contenders: &[&str],
     text: impl Fn(&SettingData, &str) -> Option<String>,
     mean_text: impl Fn(&str) -> Option<String>,
-    paper: (&str, impl Fn(&SettingData) -> Option<String>, Option<String>),
+    paper: Option<PaperColumn>,
 ) -> Table {
     let mut columns = vec!["<scene".to_owned(), "triangles".to_owned()];
     columns.extend(contenders.iter().map(|name| name.to_string()));
-    columns.push(paper.0.to_owned());
+    columns.extend(paper.iter().map(|paper| paper.head.to_owned()));
     let mut table = Table::new(title, &columns);
     for setting in &suite.settings {
         let mut cells = vec![Cell::plain(setting.label()), Cell::plain(triangles(setting))];
@@ -28,12 +38,12 @@ pub fn scene_table(
             let text = text(setting, name).or_else(|| refused.then(|| "not measured".to_owned()));
             cells.push(cell(name, text));
         }
-        cells.push(Cell::paper(paper.1(setting)));
+        cells.extend(paper.iter().map(|paper| Cell::paper((paper.text)(setting))));
         table.push(cells);
     }
     let mut cells = vec![Cell::plain(format!("mean of {}", suite.settings.len())), Cell::plain("")];
     cells.extend(contenders.iter().map(|name| cell(name, mean_text(name))));
-    cells.push(Cell::paper(paper.2));
+    cells.extend(paper.map(|paper| Cell::paper(Some(paper.mean))));
     table.push_first(cells);
     push_refusals(&mut table, suite);
     table
