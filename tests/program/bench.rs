@@ -105,7 +105,8 @@ fn the_files_of_all_shards_are_one_run() {
     succeed(at, "report whole.jsonl --out whole");
     let tables = |folder: &str| -> Vec<String> {
         let text = fs::read_to_string(at.join(folder).join("report.md")).unwrap();
-        text.lines().filter(|line| line.starts_with('|')).map(String::from).collect()
+        let (measured, _) = text.split_once("## How it was measured").unwrap();
+        measured.lines().filter(|line| line.starts_with('|')).map(String::from).collect()
     };
     assert!(tables("parts").len() > 3);
     assert_eq!(tables("parts"), tables("whole"));
@@ -266,8 +267,7 @@ fn whole_frames_are_counted_for_every_method_and_gpu() {
     if std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_some() {
         return;
     }
-    let text = succeed(at, line).stdout;
-    assert!(text.contains("Executed slots over two renders") && text.contains("`auto` chooses"), "{text}");
+    succeed(at, line);
     let records = records(&at.join("f.jsonl"));
     for label in ["bloom", "no bloom"] {
         let measured = of_kind(&records, "measurement").into_iter().filter(|m| m["label"] == label);
