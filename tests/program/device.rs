@@ -210,11 +210,20 @@ fn adb_is_called_with_the_right_arguments() {
     succeed(at, "device install --adb adb --apk a.apk");
     // Output of adb from issues of other projects: sndcpy 64, HyperSploit 54, InstallWithOptions 22, APK-Installer 25.
     for (said, words) in [
-        ("Failure [INSTALL_FAILED_USER_RESTRICTED: Install canceled by user]", "Install via USB"),
-        ("Failure [INSTALL_FAILED_VERSION_DOWNGRADE: Downgrade detected]", "a newer yoro is on FAKE1"),
-        ("Failure [INSTALL_FAILED_NO_MATCHING_ABIS: Failed to extract, res=-113]", "processor of FAKE1"),
-        ("Failure [INSTALL_FAILED_UPDATE_INCOMPATIBLE: ignoring!]", "signed with another key"),
-        ("Failure [INSTALL_PARSE_FAILED_NOT_APK: x]", "(INSTALL_PARSE_FAILED_NOT_APK)"),
+        (
+            "Failure [INSTALL_FAILED_USER_RESTRICTED: Install canceled by user]",
+            "refused.apk cannot be installed on FAKE1: INSTALL_FAILED_USER_RESTRICTED",
+        ),
+        (
+            "Failure [INSTALL_FAILED_VERSION_DOWNGRADE: Downgrade detected]",
+            "INSTALL_FAILED_VERSION_DOWNGRADE: Downgrade detected",
+        ),
+        (
+            "Failure [INSTALL_FAILED_NO_MATCHING_ABIS: Failed to extract, res=-113]",
+            "INSTALL_FAILED_NO_MATCHING_ABIS",
+        ),
+        ("Failure [INSTALL_FAILED_UPDATE_INCOMPATIBLE: ignoring!]", "INSTALL_FAILED_UPDATE_INCOMPATIBLE"),
+        ("Failure [INSTALL_PARSE_FAILED_NOT_APK: x]", "INSTALL_PARSE_FAILED_NOT_APK"),
     ] {
         fs::create_dir_all(at.join("offline")).unwrap();
         write(at, "offline/refused.apk", &format!("adb: failed to install offline/refused.apk: {said}\n"));
@@ -225,7 +234,8 @@ fn adb_is_called_with_the_right_arguments() {
     run(at, "device install --adb adb --apk refused.apk")
         .refuses(&["adb's server does not answer", "kill-server"]);
     write(at, "full.apk", "");
-    run(at, "device install --adb adb --apk full.apk").refuses(&["storage of FAKE1 is full"]);
+    run(at, "device install --adb adb --apk full.apk")
+        .refuses(&["full.apk cannot be installed on FAKE1", "INSTALL_FAILED_INSUFFICIENT_STORAGE"]);
     let started = std::time::Instant::now();
     let said =
         run(at, "device run prototype --seconds 2 --warm-up-seconds 1 --brightness 100 --adb adb --out run");

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 use yoro_devices::capture::{DeviceInfo, Outcome, RunInfo, Sample, VERSION, Writer};
 
-use crate::browser::{Browser, check_figures};
+use crate::browser::{Browser, check_report};
 use crate::program::{run, succeed};
 
 const SECONDS: u32 = 60;
@@ -83,7 +83,7 @@ fn captures_become_a_page_and_tables() {
         assert!(markdown.contains(needed), "{needed}: {markdown}");
     }
     if let Some(mut browser) = Browser::start() {
-        check_figures(&mut browser, &at.join("out/report.html"));
+        check_report(&mut browser, &at.join("out/report.html"));
     }
 }
 

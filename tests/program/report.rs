@@ -5,7 +5,7 @@ use std::path::Path;
 
 use image::{Rgb, RgbImage};
 
-use crate::browser::{Browser, check_page};
+use crate::browser::{Browser, check_report_with_pictures};
 use crate::program::{run, succeed};
 
 const HEADER: &str = r#"{"record":"header","yoro_bench":1,"suites":["scenes"],"quick":true,"machine":{"cpu":"a CPU","cores":2,"os":"Linux","gl_renderer":"llvmpipe","gl_version":"OpenGL ES 3.2","yoro":"0.1.0","date":"2026-01-01T00:00:00Z","command":"yoro bench scenes"},"pass_clock":"finish","parameters":[{"name":"dominant eye","value":"right"}]}"#;
@@ -37,7 +37,7 @@ fn the_page_is_shown_in_a_browser() {
         assert!(results.contains(needed), "{needed}: {results}");
     }
     if let Some(mut browser) = Browser::start() {
-        check_page(&mut browser, &at.join("out/report.html"));
+        check_report_with_pictures(&mut browser, &at.join("out/report.html"));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::browser::{Browser, check_page};
+use crate::browser::{Browser, check_report_with_pictures};
 use crate::program::{run, succeed};
 
 #[test]
@@ -20,7 +20,7 @@ fn a_report_of_every_method() {
         assert!(!page.contains(outside), "the page needs {outside}");
     }
     if let Some(mut browser) = Browser::start() {
-        check_page(&mut browser, &dir.path().join("out/report.html"));
+        check_report_with_pictures(&mut browser, &dir.path().join("out/report.html"));
     }
 }
 

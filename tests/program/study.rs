@@ -1,4 +1,4 @@
-//! `yoro study`: from a plan to a log to a verdict. The ratings are made up by this test.
+//! `yoro study`: from a plan to a log to a report. The ratings are made up by this test.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -6,7 +6,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::browser::{Browser, check_figures};
+use crate::browser::{Browser, check_report};
 use crate::program::{run, succeed};
 
 /// Returns the answer of a participant who likes both methods about equally.
@@ -17,7 +17,7 @@ fn rating(participant: usize, method: &str, scene: usize) -> f64 {
 }
 
 #[test]
-fn from_a_plan_to_a_verdict() {
+fn from_a_plan_to_a_report() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     let plan = "study plan --participants 6 --scenes street,atrium,talk --methods conventional,yoro --seed 4 --questions image-quality";
@@ -63,10 +63,9 @@ fn from_a_plan_to_a_verdict() {
 
     let analysed = succeed(at, "study analyse ratings.csv --out out");
     assert!(analysed.stdout.contains("left out: P06 has not rated"), "{}", analysed.stdout);
-    assert!(analysed.stdout.contains("Equivalent"), "{}", analysed.stdout);
     let study: Value = serde_json::from_slice(&fs::read(at.join("out/study.json")).unwrap()).unwrap();
     let question = &study["questions"][0];
-    assert_eq!((&question["difference"]["n"], &question["verdict"]), (&5.into(), &"equivalent".into()));
+    assert_eq!(question["difference"]["n"], 5);
     let expected =
         (1..=5).flat_map(|p| (0..3).map(move |s| rating(p, "yoro", s) - rating(p, "conventional", s)));
     let expected = expected.sum::<f64>() / 15.0;
@@ -78,30 +77,11 @@ fn from_a_plan_to_a_verdict() {
         "{markdown}"
     );
     if let Some(mut browser) = Browser::start() {
-        check_figures(&mut browser, &at.join("out/study.html"));
+        check_report(&mut browser, &at.join("out/study.html"));
     }
     // The scale on the command line limits the ratings.
     run(at, "study analyse ratings.csv --scale 1..3 --out out")
         .refuses(&["ratings.csv, line 2", "from 1 to 3"]);
-}
-
-/// The viewer logs ratings with one decimal: 4.1 - 3.1, 3.2 - 2.2 and 2.3 - 1.3 are not equal in f64.
-#[test]
-fn participants_who_differ_by_the_same_have_no_scatter() {
-    let dir = tempfile::tempdir().unwrap();
-    let mut table = String::from("participant,method,scene,question,rating\n");
-    for (participant, ours, baseline) in [("P1", 4.1, 3.1), ("P2", 3.2, 2.2), ("P3", 2.3, 1.3)] {
-        let _ = writeln!(
-            table,
-            "{participant},yoro,street,q,{ours}\n{participant},conventional,street,q,{baseline}"
-        );
-    }
-    fs::write(dir.path().join("ratings.csv"), &table).unwrap();
-    let said = succeed(dir.path(), "study analyse ratings.csv --alpha 1e-9").stdout;
-    assert!(said.contains("differ by the same 1.00: there is no scatter"), "{said}");
-    fs::write(dir.path().join("ratings.csv"), table.replace("2.3", "2.4")).unwrap();
-    let said = succeed(dir.path(), "study analyse ratings.csv --alpha 1e-9").stdout;
-    assert!(said.contains("Undecided"), "{said}");
 }
 
 #[test]
@@ -126,9 +106,7 @@ fn mistakes() {
         ("study analyse nowhere.csv", &["nowhere.csv does not exist"]),
         ("study analyse one.csv", &["nobody has rated conventional", "yoro"]),
         ("study analyse one.csv --baseline yoro", &["only yoro was rated"]),
-        ("study analyse one.csv --bound 0", &["--bound"]),
         ("study analyse one.csv --scale 5", &["1..5"]),
-        ("study analyse one.csv --alpha 0.7", &["--alpha"]),
     ] {
         run(at, line).refuses(naming);
     }

@@ -195,6 +195,11 @@ impl Browser {
         }
     }
 
+    /// Moves the pointer to a place in the window.
+    pub fn point(&mut self, x: f64, y: f64) {
+        self.call("Input.dispatchMouseEvent", json!({ "type": "mouseMoved", "x": x, "y": y }));
+    }
+
     /// Presses and releases a key that types a character.
     pub fn press(&mut self, key: &str) {
         self.call("Input.dispatchKeyEvent", json!({ "type": "keyDown", "key": key, "text": key }));
@@ -271,31 +276,77 @@ fn find() -> Option<PathBuf> {
         .find_map(|name| folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file()))
 }
 
-/// Checks what every page must do in a browser: no script errors, nothing loaded from elsewhere, all figures present,
-/// other colours in dark mode, and no part wider than a narrow window.
-pub fn check_figures(browser: &mut Browser, page: &Path) {
+/// Checks what every report must do in a browser: no script errors, nothing loaded from elsewhere, all plots present,
+/// values under the pointer, series that the legend hides, tables and plots as CSV, other colours in dark mode, and no part
+/// wider than a narrow window.
+pub fn check_report(browser: &mut Browser, page: &Path) {
+    browser.run_before_pages(
+        "Object.defineProperty(navigator, 'clipboard', { value: { writeText: async text => { window.copied = text; } } })",
+    );
     browser.show(1400, "light");
     browser.open(page);
     browser.expect_no_error();
-    let figures =
-        "[...document.querySelectorAll('.plots svg')].filter(s => !s.closest('details:not([open])'))";
-    assert!(browser.evaluate(&format!("{figures}.length")).as_u64().unwrap() > 0, "no figure");
-    let flat = format!("{figures}.filter(s => s.getBoundingClientRect().height < 50).length");
-    assert_eq!(browser.evaluate(&flat), 0, "figures without height");
+    let plots =
+        "[...document.querySelectorAll('.drawing > svg')].filter(s => !s.closest('details:not([open])'))";
+    assert!(browser.evaluate(&format!("{plots}.length")).as_u64().unwrap() > 0, "no plot");
+    let flat = format!("{plots}.filter(s => s.getBoundingClientRect().height < 50).length");
+    assert_eq!(browser.evaluate(&flat), 0, "plots without height");
+    check_plot(browser);
+
+    browser.click("document.querySelector('figure .copy')");
+    let plot = browser.evaluate("window.copied");
+    assert!(
+        plot.as_str().unwrap().starts_with("series,") && plot.as_str().unwrap().lines().count() > 1,
+        "{plot}"
+    );
+    browser.click("document.querySelector('td').closest('table').querySelector('.copy')");
+    let table = browser.evaluate("window.copied").as_str().unwrap().to_owned();
+    let head = "document.querySelector('td').closest('table').querySelector('th').textContent";
+    let head = browser.evaluate(head).as_str().unwrap().to_owned();
+    assert!(table.starts_with(&format!("{head},")) && table.lines().count() > 1, "{table}");
+
     let colors = "JSON.stringify([getComputedStyle(document.body).backgroundColor, \
-                  getComputedStyle(document.querySelector('.plots svg text')).fill])";
+                  getComputedStyle(document.querySelector('.drawing svg text')).fill])";
     let light = browser.evaluate(colors);
-    browser.show(500, "dark");
+    browser.show(400, "dark");
     let dark = browser.evaluate(colors);
     assert_ne!(light, dark, "a dark page has dark colours");
     let wide = browser.evaluate("document.documentElement.scrollWidth");
-    assert!(wide.as_u64().unwrap() <= 500, "the page is {wide} pixels wide in a window of 500");
+    assert!(wide.as_u64().unwrap() <= 400, "the page is {wide} pixels wide in a window of 400");
     browser.expect_no_error();
 }
 
-/// Checks the same as [`check_figures`], and that all pictures load and can be switched by mouse and keyboard.
-pub fn check_page(browser: &mut Browser, page: &Path) {
-    check_figures(browser, page);
+/// Checks that a plot shows the value under the pointer, and that its legend hides a series.
+fn check_plot(browser: &mut Browser) {
+    let figure = "document.querySelector('figure')";
+    let shown = format!(
+        "{figure}.querySelector('output').hidden ? null : {figure}.querySelector('output').textContent"
+    );
+    let last = format!(
+        "(() => {{ const f = {figure}, p = JSON.parse(f.querySelector('script').textContent).points.at(-1); f.scrollIntoView(); \
+         const s = f.querySelector('.drawing svg'), b = s.getBoundingClientRect(), k = b.width / s.viewBox.baseVal.width; \
+         return [b.left + k * p.at[0], b.top + k * p.at[1], p.series, p.x]; }})()"
+    );
+    let place = browser.evaluate(&last);
+    browser.point(place[0].as_f64().unwrap(), place[1].as_f64().unwrap());
+    let value = browser.evaluate(&shown);
+    let needed = format!("{:.1}", place[3].as_f64().unwrap().abs());
+    let number = needed.split('.').next().unwrap();
+    assert!(value.as_str().is_some_and(|text| text.contains(number)), "{value} has no {number}");
+    let series = &place[2];
+    browser.click(&format!("{figure}.querySelectorAll('.legend button')[{series}]"));
+    let group = format!("getComputedStyle({figure}.querySelector('g[data-series=\"{series}\"]')).display");
+    assert_eq!(browser.evaluate(&group), "none", "a click on the legend hides the series");
+    let place = browser.evaluate(&last);
+    browser.point(place[0].as_f64().unwrap(), place[1].as_f64().unwrap());
+    assert_ne!(browser.evaluate(&shown), value, "what is hidden has no values");
+    browser.click(&format!("{figure}.querySelectorAll('.legend button')[{series}]"));
+    assert_ne!(browser.evaluate(&group), "none", "another click shows it again");
+}
+
+/// Checks the same as [`check_report`], and that all pictures load and can be switched by mouse and keyboard.
+pub fn check_report_with_pictures(browser: &mut Browser, page: &Path) {
+    check_report(browser, page);
     browser.show(1400, "light");
     browser.open(page);
     let broken = "[...document.images].filter(i => !i.complete || i.naturalWidth === 0).length";
@@ -309,7 +360,7 @@ pub fn check_page(browser: &mut Browser, page: &Path) {
     assert!(first.len() >= 4 && first.starts_with("10") && first.matches('1').count() == 1, "{first}");
     let caption = "document.querySelector('.viewer .caption').textContent";
     let before = browser.evaluate(caption);
-    browser.click("document.querySelector('.viewer .views button:nth-child(2)')");
+    browser.click("document.querySelector('.viewer .bar button:nth-child(2)')");
     let second = browser.evaluate(shown);
     assert!(second.as_str().unwrap().starts_with("010"), "a click shows the second picture: {second}");
     assert_ne!(browser.evaluate(caption), before, "and its caption");
@@ -318,7 +369,7 @@ pub fn check_page(browser: &mut Browser, page: &Path) {
     browser.press("f");
     assert_eq!(browser.evaluate(shown), second, "key f goes back");
     browser.press("s");
-    let partner = "document.querySelector('.viewer .partner')?.naturalWidth ?? 0";
-    assert!(browser.evaluate(partner).as_u64().unwrap() > 0, "key s shows both eyes");
+    let other = "document.querySelector('.viewer .other')?.naturalWidth ?? 0";
+    assert!(browser.evaluate(other).as_u64().unwrap() > 0, "key s shows both eyes");
     browser.expect_no_error();
 }

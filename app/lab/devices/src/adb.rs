@@ -121,6 +121,14 @@ pub enum DeviceError {
         /// adb's words.
         state: String,
     },
+    /// adb does not reach the device.
+    #[error("adb does not reach {serial} ({reason}): connect it again, unlock it, and give the same command")]
+    Unreached {
+        /// The device's serial number, as adb lists it.
+        serial: String,
+        /// The reason in adb's words.
+        reason: String,
+    },
     /// The device was connected, but no longer is.
     #[error("{0} was lost: connect it again and give the same command")]
     Lost(String),
@@ -138,45 +146,14 @@ pub enum DeviceError {
         /// The application's package.
         package: String,
     },
-    /// Installing failed for lack of storage.
-    #[error("the storage of {0} is full: remove something from it, then install again")]
-    StorageFull(String),
-    /// The installed application is signed with another key.
-    #[error(
-        "the yoro on {} is signed with another key: adb -s {} uninstall io.github.yoro, then install again",
-        .0, quoted(.0)
-    )]
-    OtherKey(String),
-    /// The device, or its user, does not allow a computer to install applications.
-    #[error(
-        "{0} does not let this computer install anything: confirm the installation on its screen; on phones by Xiaomi turn on \"Install via USB\" in the developer options first"
-    )]
-    InstallRestricted(String),
-    /// A newer version is installed.
-    #[error(
-        "a newer yoro is on {}: adb -s {} uninstall io.github.yoro, then install again",
-        .0, quoted(.0)
-    )]
-    Downgrade(String),
-    /// The APK contains no code for the device's processor.
-    #[error(
-        "{} has no code for the processor of {serial}: make it for all processors by cargo xtask apk --release",
-        apk.display()
-    )]
-    NoAbi {
-        /// The device's serial number, as adb lists it.
-        serial: String,
-        /// The APK file.
-        apk: PathBuf,
-    },
-    /// The installation failed for another reason.
-    #[error("{} cannot be installed on {serial} ({reason}): make it anew by cargo xtask apk --release", apk.display())]
+    /// The installation failed.
+    #[error("{} cannot be installed on {serial}: {reason} (docs/measuring.md has the remedies)", apk.display())]
     Install {
         /// The device's serial number, as adb lists it.
         serial: String,
         /// The APK file.
         apk: PathBuf,
-        /// Android's name for the reason.
+        /// The reason in adb's words.
         reason: String,
     },
     /// Power cannot be measured because the device is plugged in.
@@ -253,15 +230,16 @@ pub enum DeviceError {
 impl DeviceError {
     /// True if the device may come back without help.
     pub fn is_lost(&self) -> bool {
-        use DeviceError::{Lost, Offline, Server, Silent, Unauthorized, Unknown};
+        use DeviceError::{Lost, Offline, Server, Silent, Unauthorized, Unknown, Unreached};
         matches!(
             self,
-            Lost { .. }
-                | Offline { .. }
-                | Unauthorized { .. }
-                | Unknown { .. }
+            Lost(_)
+                | Offline(_)
+                | Unauthorized(_)
+                | Unknown(_)
                 | Silent { .. }
                 | Server { .. }
+                | Unreached { .. }
         )
     }
 }

@@ -117,12 +117,13 @@ impl AdbProgram {
     /// Returns an error if adb reports that it cannot reach the device. adb nests causes in its messages, such as
     /// `failed to get feature set: device offline`. File names in them are not taken for causes.
     fn unreached(&self, stderr: &str, serial: &str) -> Option<DeviceError> {
-        stderr.lines().filter_map(|line| self.own_words(line)).find_map(|words| {
-            let cause = words.split(": ").map(str::trim).find_map(unreached_by)?;
-            Some(match cause {
-                Some(error) => error(serial.to_owned()),
-                None => DeviceError::Server { reason: words.trim().into() },
-            })
+        let own = stderr.lines().filter_map(|line| self.own_words(line));
+        let words = own.map(str::trim).find(|words| words.split(": ").map(str::trim).any(is_unreached))?;
+        let (reason, lower) = (words.to_owned(), words.to_lowercase());
+        let is_server = lower.contains("daemon") || lower.contains("server version");
+        Some(match is_server {
+            true => DeviceError::Server { reason },
+            false => DeviceError::Unreached { serial: serial.into(), reason },
         })
     }
 
@@ -158,38 +159,31 @@ fn listed(text: &str) -> Vec<Listed> {
     text.lines().filter_map(device).collect()
 }
 
-/// Makes an error from a device's serial number. `None` if adb's server is the cause.
-type Cause = Option<fn(String) -> DeviceError>;
-
-/// How adb's messages about unreachable devices begin.
-const UNREACHED: [(&str, Cause); 18] = [
-    ("device unauthorized", Some(DeviceError::Unauthorized)),
-    ("device still authorizing", Some(DeviceError::Unauthorized)),
-    ("device offline", Some(DeviceError::Offline)),
-    ("device still connecting", Some(DeviceError::Offline)),
-    ("insufficient permissions", Some(DeviceError::NoPermission)),
-    ("no permissions", Some(DeviceError::NoPermission)),
-    ("device not found", Some(DeviceError::Lost)),
-    ("no devices", Some(DeviceError::Lost)),
-    ("no emulators", Some(DeviceError::Lost)),
-    ("closed", Some(DeviceError::Lost)),
-    ("protocol fault", Some(DeviceError::Lost)),
-    ("connection reset", Some(DeviceError::Lost)),
-    ("couldn't read from device", Some(DeviceError::Lost)),
-    ("cannot connect to daemon", None),
-    ("failed to check server version", None),
-    ("failed to start daemon", None),
-    ("daemon still not running", None),
-    ("adb server ", None),
+/// How adb's messages about devices and servers begin that it does not reach.
+const UNREACHED: [&str; 16] = [
+    "device unauthorized",
+    "device still authorizing",
+    "device offline",
+    "device still connecting",
+    "device not found",
+    "no devices",
+    "no emulators",
+    "closed",
+    "protocol fault",
+    "connection reset",
+    "couldn't read from device",
+    "cannot connect to daemon",
+    "failed to check server version",
+    "failed to start daemon",
+    "daemon still not running",
+    "adb server ",
 ];
 
-/// Returns why adb cannot reach a device, from one part of its message.
-fn unreached_by(sentence: &str) -> Option<Cause> {
+/// True if a part of adb's message says that it reaches no device.
+fn is_unreached(sentence: &str) -> bool {
     let lower = sentence.trim_start_matches("* ").to_lowercase();
-    if lower.starts_with("device '") && lower.trim_end_matches('.').ends_with("' not found") {
-        return Some(Some(DeviceError::Lost));
-    }
-    UNREACHED.iter().find(|(begin, _)| lower.starts_with(begin)).map(|(_, cause)| *cause)
+    let is_gone = lower.starts_with("device '") && lower.trim_end_matches('.').ends_with("' not found");
+    is_gone || UNREACHED.iter().any(|begin| lower.starts_with(begin))
 }
 
 struct ProgramDevice {
@@ -284,21 +278,10 @@ impl Device for ProgramDevice {
         if said.success && !said.stdout.contains("Failure") {
             return Ok(());
         }
-        let serial = self.serial.clone();
         let all = format!("{}\n{}", said.stdout, said.stderr);
-        // `Failure [INSTALL_FAILED_VERSION_DOWNGRADE: in detail]`.
-        let word =
-            all.split_once("Failure [").and_then(|(_, word)| word.split([':', ']']).next()).map(str::trim);
-        Err(match word.unwrap_or_default() {
-            "INSTALL_FAILED_INSUFFICIENT_STORAGE" => DeviceError::StorageFull(serial),
-            "INSTALL_FAILED_UPDATE_INCOMPATIBLE" => DeviceError::OtherKey(serial),
-            "INSTALL_FAILED_USER_RESTRICTED" => DeviceError::InstallRestricted(serial),
-            "INSTALL_FAILED_VERSION_DOWNGRADE" => DeviceError::Downgrade(serial),
-            "INSTALL_FAILED_NO_MATCHING_ABIS" => DeviceError::NoAbi { serial, apk: apk.into() },
-            _ if all.contains("No space left on device") => DeviceError::StorageFull(serial),
-            "" => DeviceError::Install { serial, apk: apk.into(), reason: said.reason() },
-            word => DeviceError::Install { serial, apk: apk.into(), reason: word.into() },
-        })
+        let failure = all.lines().find_map(|line| line.split_once("Failure [")?.1.split(']').next());
+        let reason = failure.map_or_else(|| said.reason(), str::to_owned);
+        Err(DeviceError::Install { serial: self.serial.clone(), apk: apk.into(), reason })
     }
 
     fn logcat(&self, since: Option<&str>) -> Result<Box<dyn LogStream>, DeviceError> {
@@ -445,10 +428,6 @@ mod tests {
         }
         let server = unreached("adb.exe: error: cannot connect to daemon").unwrap().to_string();
         assert!(server.contains("adb kill-server"), "{server}");
-        assert!(matches!(
-            unreached("adb: insufficient permissions for device: user in plugdev group"),
-            Some(DeviceError::NoPermission { .. })
-        ));
     }
 
     #[test]

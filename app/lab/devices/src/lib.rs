@@ -7,7 +7,7 @@
 //!
 //! The inputs are devices, plans of experiments and captures; the outputs are captures and reports. [`adb`] is the
 //! interface to devices, which [`adb_program`] implements with the program adb. [`follow`] reads a
-//! log across lost connections, [`reading`] parses its lines into samples ([`foreign`] finds the lines of other
+//! log across lost connections, [`reading`] parses its lines into samples ([`external_app`] finds the lines of other
 //! applications), [`run`] captures one run, [`experiment`] many, [`farm`] reads what device farms give back, and
 //! [`report`] computes figures from them. [`study`] plans and analyses user studies.
 //!
@@ -17,9 +17,9 @@ pub mod adb;
 pub mod adb_program;
 pub mod capture;
 pub mod experiment;
+pub mod external_app;
 pub mod farm;
 pub mod follow;
-pub mod foreign;
 pub mod held_settings;
 mod latin_square;
 pub mod log;

@@ -103,8 +103,15 @@ fn around(mean: f64, freedom: usize, error: f64) -> Interval {
 /// Returns the 97.5th percentile of Student's t with at least one degree of freedom.
 fn t_quantile(freedom: usize) -> f64 {
     const FEW: [f64; 9] = [
-        12.706204736, 4.302652730, 3.182446305, 2.776445105, 2.570581836, 2.446911851, 2.364624252,
-        2.306004135, 2.262157163,
+        12.706204736,
+        4.302652730,
+        3.182446305,
+        2.776445105,
+        2.570581836,
+        2.446911851,
+        2.364624252,
+        2.306004135,
+        2.262157163,
     ];
     if let Some(quantile) = FEW.get(freedom - 1) {
         return *quantile;
@@ -115,7 +122,8 @@ fn t_quantile(freedom: usize) -> f64 {
         (z.powi(3) + z) / 4.0,
         (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0,
         (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / 384.0,
-        (79.0 * z.powi(9) + 776.0 * z.powi(7) + 1482.0 * z.powi(5) - 1920.0 * z.powi(3) - 945.0 * z) / 92160.0,
+        (79.0 * z.powi(9) + 776.0 * z.powi(7) + 1482.0 * z.powi(5) - 1920.0 * z.powi(3) - 945.0 * z)
+            / 92160.0,
     ];
     terms.iter().rev().fold(0.0, |sum, term| (sum + term) / v) + z
 }
@@ -127,7 +135,9 @@ mod tests {
     #[test]
     fn quantiles_agree_with_scipy() {
         // scipy.stats.t.ppf(.975, n)
-        for (freedom, expected) in [(1, 12.706204736), (9, 2.262157163), (10, 2.228138852), (30, 2.042272456), (1000, 1.962339081)] {
+        for (freedom, expected) in
+            [(1, 12.706204736), (9, 2.262157163), (10, 2.228138852), (30, 2.042272456), (1000, 1.962339081)]
+        {
             assert!((t_quantile(freedom) - expected).abs() < 2e-5, "{freedom}: {}", t_quantile(freedom));
         }
     }
@@ -135,12 +145,17 @@ mod tests {
     #[test]
     fn repetitions_are_pooled_and_single_values_are_blocks() {
         // SciPy: t.interval(.95, 4, mean, sqrt(s2 / 3 * 2) / 2) with the pooled variance s2 of both blocks.
-        let (mean, interval) = mean_of_blocks(&[vec![1.0, 2.0, 3.0], vec![11.0, 12.0, 13.0], vec![]]).unwrap();
+        let (mean, interval) =
+            mean_of_blocks(&[vec![1.0, 2.0, 3.0], vec![11.0, 12.0, 13.0], vec![]]).unwrap();
         let BlockInterval { interval, basis } = interval.unwrap();
         let reach = 2.776445105 * (2.0f64 / 3.0).sqrt() / 2.0;
         assert!((mean, basis) == (7.0, Basis::Repetitions) && (interval.high - 7.0 - reach).abs() < 1e-9);
         let (mean, interval) = mean_of_blocks(&[vec![1.0], vec![3.0]]).unwrap();
-        assert!(mean == 2.0 && interval.is_some_and(|i| i.basis == Basis::Blocks && (i.interval.high - 14.706).abs() < 1e-3));
+        assert!(
+            mean == 2.0
+                && interval
+                    .is_some_and(|i| i.basis == Basis::Blocks && (i.interval.high - 14.706).abs() < 1e-3)
+        );
         assert_eq!(mean_of_blocks(&[vec![5.0]]), Some((5.0, None)));
         assert_eq!(mean_of_blocks(&[vec![]]), None);
     }

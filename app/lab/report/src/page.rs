@@ -171,7 +171,9 @@ mod tests {
         let picture = |label: &str, is_map| Picture {
             label: label.into(),
             caption: format!("This is {label}."),
-            image: RgbImage::from_fn(64, 48, |x, y| image::Rgb([(x * 4) as u8, (y * 5) as u8, (x * y) as u8])),
+            image: RgbImage::from_fn(64, 48, |x, y| {
+                image::Rgb([(x * 4) as u8, (y * 5) as u8, (x * y) as u8])
+            }),
             is_map,
         };
         section.pictures(Pictures {
@@ -187,11 +189,26 @@ mod tests {
     #[test]
     fn the_page_is_escaped_and_needs_nothing_from_elsewhere() {
         let html = report().to_html().unwrap();
-        for foreign in ["<b>\"", "<one>", "<title>\"", "<c>", "https://", "<link", "url(", "@import", " src=\"/", "<script src"] {
+        for foreign in [
+            "<b>\"",
+            "<one>",
+            "<title>\"",
+            "<c>",
+            "https://",
+            "<link",
+            "url(",
+            "@import",
+            " src=\"/",
+            "<script src",
+        ] {
             assert!(!html.contains(foreign), "{foreign}");
         }
         assert!(html.contains("See <code>a &lt;c&gt;</code>, <b>not</b> less."));
-        assert_eq!(html.matches("</script>").count(), 4 + 1, "a row named like the end of a script ends none");
+        assert_eq!(
+            html.matches("</script>").count(),
+            4 + 1,
+            "a row named like the end of a script ends none"
+        );
         assert!(html.contains("id=\"a-café-b\"") && html.contains("id=\"a-café-b-2\""));
         assert_eq!((html.matches("class=\"plots\"").count(), html.matches("<figure").count()), (2, 4));
         assert_eq!(html.matches("src=\"data:image/jpeg;base64,").count(), 4);

@@ -9,7 +9,7 @@ use anyhow::{Context as _, bail, ensure};
 use crate::cli::Subcommand;
 use crate::cli::args;
 use crate::cli::machine;
-use yoro_devices::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
+use yoro_devices::study::{Collected, Condition, Plan, Ratings, Study, StudyError, read_trials};
 use yoro_files as files;
 use yoro_render::stereo::Method;
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
@@ -75,7 +75,7 @@ struct CollectArgs {
     out: PathBuf,
 }
 
-/// Test for each question whether the methods differ, and whether they are equivalent
+/// Compare each method with the baseline, question by question
 #[derive(clap::Args, Clone, Debug)]
 struct AnalyseArgs {
     /// Table with the columns participant, method, scene, question and rating
@@ -87,15 +87,6 @@ struct AnalyseArgs {
     /// Lowest and highest rating
     #[arg(long, default_value = "1..5", value_parser = parse_scale, value_name = "LOW..HIGH")]
     scale: Scale,
-    /// Equivalence margin of the mean
-    #[arg(long, default_value_t = 0.5, value_parser = parse_above_zero, value_name = "DIFFERENCE")]
-    bound: f64,
-    /// Level of the tests
-    #[arg(long, default_value_t = 0.05, value_parser = parse_alpha)]
-    alpha: f64,
-    /// Power for which the required number of participants is computed
-    #[arg(long, default_value_t = 0.8, value_parser = parse_share)]
-    power: f64,
     /// Folder for study.html, study.md and study.json
     #[arg(long, default_value = "out/study", value_name = "FOLDER")]
     out: PathBuf,
@@ -109,23 +100,6 @@ fn parse_scale(text: &str) -> Result<Scale, String> {
     let scale: Option<[f64; 2]> =
         ends.filter(|[low, high]: &[f64; 2]| low < high && (high - low).is_finite());
     scale.map(Scale).ok_or_else(|| "give the lowest and the highest rating: 1..5".into())
-}
-
-fn parse_above_zero(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
-    value.ok_or_else(|| "give a number above 0".into())
-}
-
-fn parse_share(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|value| *value > 0.0 && *value < 1.0);
-    value.ok_or_else(|| "give a number between 0 and 1".into())
-}
-
-fn parse_alpha(text: &str) -> Result<f64, String> {
-    parse_share(text)
-        .ok()
-        .filter(|alpha| *alpha < 0.5)
-        .ok_or_else(|| "give a number between 0 and 0.5".into())
 }
 
 impl Subcommand for StudyArgs {
@@ -246,14 +220,7 @@ fn collect(args: &CollectArgs) -> anyhow::Result<()> {
 fn analyse(args: &AnalyseArgs) -> anyhow::Result<()> {
     let Scale(scale) = args.scale;
     let ratings = Ratings::read(&args.ratings, scale)?;
-    let options = Options {
-        baseline: args.baseline.clone(),
-        scale,
-        bound: args.bound,
-        alpha: args.alpha,
-        power: args.power,
-    };
-    let study = Study::new(&ratings, options, machine::made_by())?;
+    let study = Study::new(&ratings, &args.baseline, scale, machine::made_by())?;
     files::create_folder(&args.out)?;
     let written = study.write(&args.out)?;
     print!("{}{written}", study.to_text());

@@ -3,6 +3,7 @@
 //!
 //! Each change names the text that it replaces, and fails if the shader does not have it any more.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +41,7 @@ const VARIANTS: [(&str, &[u32]); 5] = [
     ("", &[1, 2, 6, 14, 30, 62]),
     ("DEPTH_PAIRS", &[1, 2, 6, 14, 30, 62]),
     ("WRITE_DEPTH", &[1]),
-    ("WRITE_DEPTH DEPTH_PAIRS", &[1]),
+    ("DEPTH_PAIRS WRITE_DEPTH", &[1]),
     ("BLOOM", &[1]),
 ];
 
@@ -88,7 +89,9 @@ fn with_parts(text: &str, bits: u32) -> anyhow::Result<String> {
 pub fn add_parts(programs: &mut Vec<Value>) -> anyhow::Result<()> {
     for (macros, kept) in VARIANTS {
         let name = [MARCH, macros].join(" ").trim_end().to_owned();
-        let whole = programs.iter().find(|program| program["name"] == name.as_str()).cloned();
+        let words = |name: &str| name.split(' ').map(str::to_owned).collect::<BTreeSet<_>>();
+        let is_whole = |program: &&Value| program["name"].as_str().is_some_and(|own| words(own) == words(&name));
+        let whole = programs.iter().find(is_whole).cloned();
         let whole = whole.with_context(|| format!("no program is called {name}"))?;
         for bits in kept {
             let mut program = whole.clone();

@@ -82,7 +82,10 @@ pub(super) fn machine(title: &str, machine: &Machine, parameters: &[Parameter]) 
 pub(super) fn pictures(viewpoint: &Viewpoint, title: String, note: String) -> Pictures {
     let (dominant, other) = (viewpoint.dominant_eye.name(), viewpoint.dominant_eye.other().name());
     let figures = |quality: &Quality| {
-        format!("PSNR {} dB, SSIM {:.4} (uniform 7x7: {:.4}).", quality.psnr, quality.ssim_gaussian, quality.ssim_uniform)
+        format!(
+            "PSNR {} dB, SSIM {:.4} (uniform 7x7: {:.4}).",
+            quality.psnr, quality.ssim_gaussian, quality.ssim_uniform
+        )
     };
     let picture = |label: &str, caption: String, image: &RgbImage, is_map: bool| Picture {
         label: label.into(),
@@ -93,7 +96,8 @@ pub(super) fn pictures(viewpoint: &Viewpoint, title: String, note: String) -> Pi
     let truth = format!("The {other} eye, really rendered: the reference.");
     let mut pictures = vec![picture("really rendered", truth, &viewpoint.ground_truth, false)];
     for view in &viewpoint.views {
-        let caption = format!("The {other} eye, synthesized from the {dominant} one. {}", figures(&view.quality));
+        let caption =
+            format!("The {other} eye, synthesized from the {dominant} one. {}", figures(&view.quality));
         pictures.push(picture(&view.method, caption, &view.eye, false));
     }
     let same = figures(&viewpoint.same_image);
@@ -185,19 +189,26 @@ fn figures(run: &RunReport) -> Table {
     let mut table = Table::new("All figures", &columns);
     let quality = |quality: &Quality, cell: fn(Option<String>) -> Cell| {
         let Quality { psnr, ssim_gaussian, ssim_uniform, .. } = quality;
-        [psnr.to_string(), format!("{ssim_gaussian:.4}"), format!("{ssim_uniform:.4}")].map(|text| cell(Some(text)))
+        [psnr.to_string(), format!("{ssim_gaussian:.4}"), format!("{ssim_uniform:.4}")]
+            .map(|text| cell(Some(text)))
     };
     let papers = |scene: Option<&PaperScene>| {
         let figures = |scene: &PaperScene| {
             let name = if scene.name.is_empty() { "average" } else { &scene.name };
-            [name.into(), format!("{:.2}", scene.psnr), format!("{:.4}", scene.ssim), format!("{:.2}", scene.frame_time_ratio())]
+            [
+                name.into(),
+                format!("{:.2}", scene.psnr),
+                format!("{:.4}", scene.ssim),
+                format!("{:.2}", scene.frame_time_ratio()),
+            ]
         };
         let texts = scene.map(figures).map_or([const { None }; 4], |texts| texts.map(Some));
         texts.map(Cell::paper)
     };
     let rows = run.rows();
     for (i, row) in rows.iter().enumerate() {
-        let mut cells = vec![Cell::plain(&row.scene), Cell::plain(short_count(row.triangles)), Cell::plain(&row.method)];
+        let mut cells =
+            vec![Cell::plain(&row.scene), Cell::plain(short_count(row.triangles)), Cell::plain(&row.method)];
         cells.extend(quality(&row.quality, Cell::ours));
         cells.extend(quality(&row.same_image, Cell::base));
         cells.push(Cell::plain(format!("{:.1}", row.frame_ms)));
@@ -207,7 +218,8 @@ fn figures(run: &RunReport) -> Table {
         table.push_grouped(cells, i == 0 || rows[i - 1].scene != row.scene);
     }
     for (i, mean) in run.means().into_iter().enumerate() {
-        let mut cells = vec![Cell::plain(format!("mean of {}", mean.scenes)), Cell::plain(""), Cell::plain(&mean.method)];
+        let mut cells =
+            vec![Cell::plain(format!("mean of {}", mean.scenes)), Cell::plain(""), Cell::plain(&mean.method)];
         cells.extend(quality(&mean.quality, Cell::ours));
         cells.extend(quality(&mean.same_image, Cell::base));
         cells.extend([Cell::plain(""), Cell::plain(""), Cell::ours(Some(format!("{:.2}", mean.cost_ratio)))]);
@@ -227,7 +239,8 @@ fn passes(scene: &SceneReport) -> Table {
     for pass in unique(columns.iter().flat_map(|(_, cost)| &cost.passes).map(|pass| pass.name.as_str())) {
         let mut cells = vec![Cell::plain(pass)];
         cells.extend(columns.iter().enumerate().map(|(i, (_, cost))| {
-            let ms = cost.passes.iter().find(|other| other.name == pass).map(|pass| format!("{:.2}", pass.ms));
+            let ms =
+                cost.passes.iter().find(|other| other.name == pass).map(|pass| format!("{:.2}", pass.ms));
             if i == 0 { Cell::base(ms) } else { Cell::ours(ms) }
         }));
         table.push(cells);

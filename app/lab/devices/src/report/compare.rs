@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
+use super::Device;
 use super::run::{Quantity, Run};
-use super::{CONFIDENCE, Device};
-use yoro_report::inference::{Basis, BlockInterval, Blocks, Interval, Sample};
+use yoro_report::{Basis, BlockInterval, Interval, Sample, mean_of_blocks};
 
 /// The mean of a method in a scene over all runs that count.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -73,7 +73,7 @@ pub fn means(runs: &[Run], device: &Device) -> Vec<Mean> {
                         method: method.clone(),
                         quantity,
                         sample,
-                        interval: sample.interval(CONFIDENCE),
+                        interval: sample.interval(),
                     });
                 }
             }
@@ -121,7 +121,7 @@ pub fn differences(runs: &[Run], device: &Device, baseline: &str) -> Vec<Differe
                 let (change, interval) = change(quantity, pairs)?;
                 let mean = |side: fn(&(f64, f64)) -> f64| {
                     let blocks: Vec<Vec<f64>> = pairs.iter().map(|p| p.iter().map(side).collect()).collect();
-                    Blocks::of(&blocks, CONFIDENCE).map(|blocks| blocks.mean)
+                    mean_of_blocks(&blocks).map(|(mean, _)| mean)
                 };
                 Some(Difference {
                     device: Some(device.name.clone()),
@@ -170,7 +170,7 @@ pub fn over_devices(differences: &[Difference], devices: &[&Device]) -> Vec<Diff
             baseline: mean(|difference| difference.baseline),
             change: back(sample.mean),
             interval: sample
-                .interval(CONFIDENCE)
+                .interval()
                 .map(|interval| BlockInterval { interval: interval.map(back), basis: Basis::Blocks }),
         });
     }
@@ -189,10 +189,9 @@ fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Optio
         .iter()
         .map(|block| block.iter().map(value).collect::<Option<Vec<f64>>>())
         .collect::<Option<_>>()?;
-    let blocks = Blocks::of(&blocks, CONFIDENCE)?;
+    let (mean, interval) = mean_of_blocks(&blocks)?;
     let back = |value: f64| unscale(quantity, value);
-    let interval = blocks.interval.map(|interval| interval.map(back));
-    Some((back(blocks.mean), interval))
+    Some((back(mean), interval.map(|interval| interval.map(back))))
 }
 
 /// Returns the value of a change that is averaged: for ratios the logarithm, so that half and double cancel out.

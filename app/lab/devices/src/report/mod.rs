@@ -21,11 +21,8 @@ use super::capture::{Capture, FaultKind};
 use super::mean_power::implausible;
 pub use compare::{Difference, Mean};
 pub use run::{ByLevel, Counted, Exclusion, Integrated, Quantity, Run};
-use yoro_report::{ReportError, ReportFiles};
+use yoro_report::{CONFIDENCE, Report, ReportError, ReportFiles};
 use yoro_scenes::BUILTINS;
-
-/// Confidence of all intervals.
-pub const CONFIDENCE: f64 = 0.95;
 
 /// A device that was measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -150,22 +147,9 @@ impl DeviceReport {
         report
     }
 
-    /// Returns the report as a self-contained HTML page.
-    ///
-    /// # Errors
-    /// [`ReportError`] if a figure cannot be drawn.
-    pub fn to_html(&self) -> Result<String, ReportError> {
-        page::html(self)
-    }
-
-    /// Returns the answers and all tables as Markdown.
-    pub fn to_markdown(&self) -> String {
-        page::markdown(self)
-    }
-
-    /// Returns all figures as JSON.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
+    /// Returns the report as readers see it.
+    pub fn report(&self) -> Report {
+        page::report(self)
     }
 
     /// Returns the answers for a terminal.
@@ -178,9 +162,7 @@ impl DeviceReport {
     /// # Errors
     /// [`ReportError`]. All three are made before the first one is written.
     pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
-        let files = ReportFiles::of(folder, "report");
-        files.write(&self.to_html()?, &self.to_markdown(), &self.to_json()?)?;
-        Ok(files)
+        self.report().write(folder, "report", Some(&serde_json::to_string_pretty(self)?))
     }
 }
 

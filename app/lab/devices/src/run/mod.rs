@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 
 use crate::adb::{Device, DeviceError};
 use crate::capture::{DeviceInfo, Outcome, RunInfo, VERSION};
-use crate::foreign::Subject;
+use crate::external_app::Subject;
 use crate::held_settings::{HeldSettings, Wanted};
 use crate::phone::{self, PACKAGE};
 use yoro_settings::Settings;

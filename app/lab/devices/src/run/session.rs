@@ -8,8 +8,8 @@ use indicatif::ProgressBar;
 use super::{Found, Plan, refuse_charger};
 use crate::adb::{Device, DeviceError};
 use crate::capture::{Fault, FaultKind, Outcome, RunInfo, Sample, Writer};
+use crate::external_app::ExternalApp;
 use crate::follow::{Event, Follower, faults_of_loss};
-use crate::foreign::Foreign;
 use crate::held_settings::HeldSettings;
 use crate::mean_power::MeanPower;
 use crate::phone;
@@ -66,7 +66,7 @@ pub fn capture(
         bar,
         follower: Follower::new(device, false)?,
         reading: Reading::new(subject.is_none().then(|| label.clone())),
-        foreign: subject.map(|subject| Foreign::new(device, subject)).transpose()?,
+        external_app: subject.map(|subject| ExternalApp::new(device, subject)).transpose()?,
         label,
         writer: Writer::create(folder, info)?,
         own_faults: Vec::new(),
@@ -133,7 +133,7 @@ struct Session<'a> {
     follower: Follower<'a>,
     reading: Reading,
     /// Log lines and battery of another application, if one is measured.
-    foreign: Option<Foreign<'a>>,
+    external_app: Option<ExternalApp<'a>>,
     label: String,
     writer: Writer,
     /// Faults of the connection. The other faults come from the log.
@@ -234,14 +234,14 @@ impl Session<'_> {
         let now = self.device.now();
         let passed_s = now - self.heard_s + self.delay_s;
         let damaged = self.reading.damaged();
-        let is_own = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.accepts(line))?;
+        let is_own = self.external_app.as_mut().map_or(Ok(true), |app| app.accepts(line))?;
         let news = if is_own { self.reading.line(line, Some(passed_s)) } else { LineContent::Other };
         self.others_since_s = if is_own { None } else { self.others_since_s.or(Some(now)) };
         let outcome = match news {
             LineContent::Sample(mut sample) => {
                 (self.heard_s, self.silent_since_s) = (now, now);
-                match &mut self.foreign {
-                    Some(foreign) => foreign.complete(&mut sample, &mut self.reading)?,
+                match &mut self.external_app {
+                    Some(app) => app.complete(&mut sample, &mut self.reading)?,
                     None => self.complete(&mut sample)?,
                 }
                 self.power.add(&sample);
@@ -264,7 +264,7 @@ impl Session<'_> {
             self.renew_faults()?;
         }
         let is_over = self.reading.time_s() >= self.plan.seconds() - MARGIN_S;
-        let has_ended = self.has_ended || self.foreign.is_some();
+        let has_ended = self.has_ended || self.external_app.is_some();
         Ok(outcome.or_else(|| (is_over && has_ended).then_some(Outcome::Complete)))
     }
 
@@ -367,8 +367,8 @@ impl Session<'_> {
             answer => !answer?.is_empty(),
         };
         if running {
-            let reason = match &self.foreign {
-                Some(foreign) if silent_s > START_TIMEOUT_S => foreign.silence(),
+            let reason = match &self.external_app {
+                Some(app) if silent_s > START_TIMEOUT_S => app.silence(),
                 _ => format!(
                     "the application has said nothing for {silent_s:.0} s: the screen may be off, or something else in \
                      front"
@@ -381,7 +381,7 @@ impl Session<'_> {
             return Ok(Some(Outcome::Complete));
         }
         self.restarts += 1;
-        if self.foreign.is_some() {
+        if self.external_app.is_some() {
             let detail = "the application had ended and was started anew".into();
             self.fault(FaultKind::Restarted, self.reading.time_s(), detail)?;
         }

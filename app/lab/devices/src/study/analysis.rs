@@ -1,4 +1,4 @@
-//! Analysis of ratings: for each question, each method is compared with the baseline.
+//! Analysis of ratings: for each question, each method beside the baseline.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,26 +7,8 @@ use serde::Serialize;
 use super::error::StudyError;
 use super::ratings::Ratings;
 use yoro_files::interrupt;
-use yoro_report::inference::{Equivalence, Interval, Sample, pairs_for_power};
-use yoro_report::stats::unique;
-
-/// Lowest and highest rating.
-pub type Scale = [f64; 2];
-
-/// Options of the analysis.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Options {
-    /// The method that the others are compared with.
-    pub baseline: String,
-    /// Lowest and highest rating.
-    pub scale: Scale,
-    /// Equivalence margin of the mean difference, in units of the scale.
-    pub bound: f64,
-    /// Significance level of all tests.
-    pub alpha: f64,
-    /// Power for which the sample size is computed.
-    pub power: f64,
-}
+use yoro_report::stats::{median, unique};
+use yoro_report::{Interval, Sample};
 
 /// A participant who was left out of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -37,23 +19,26 @@ pub struct Excluded {
     pub reason: String,
 }
 
-/// The verdict about a difference.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// No difference was shown, and it was shown that any difference is smaller than the bound.
-    Equivalent,
-    /// A difference was shown, and it was shown to be smaller than the bound.
-    SmallDifference,
-    /// A difference was shown, and it was not shown to be smaller than the bound.
-    Different,
-    /// Neither was shown.
-    Undecided,
-    /// There is no data to test.
-    Untestable,
+/// What participants say of a method: one value for each, the mean over the scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Opinion {
+    /// Mean and scatter over the participants.
+    #[serde(flatten)]
+    pub sample: Sample,
+    /// The median.
+    pub median: f64,
+    /// The interval of the mean; `None` for a single participant.
+    pub interval: Option<Interval>,
 }
 
-/// The comparison of a method with the baseline by one question.
+impl Opinion {
+    fn of(values: &[f64]) -> Option<Opinion> {
+        let sample = Sample::of(values)?;
+        Some(Opinion { sample, median: median(values)?, interval: sample.interval() })
+    }
+}
+
+/// A method beside the baseline by the answers to one question.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Question {
     /// The question's name.
@@ -67,38 +52,20 @@ pub struct Question {
     /// Participants left out of this comparison, with the reason.
     pub excluded: Vec<Excluded>,
     /// Ratings of the method.
-    pub ours: Sample,
+    pub ours: Opinion,
     /// Ratings of the baseline.
-    pub baseline: Sample,
+    pub baseline: Opinion,
     /// Method minus baseline, by participant.
-    pub difference: Sample,
-    /// Confidence interval of the mean difference, at 1 - alpha.
-    pub interval: Option<Interval>,
-    /// Statistic of the paired t-test. `None` if all differences are equal.
-    pub t: Option<f64>,
-    /// Two-sided p-value.
-    pub p: Option<f64>,
-    /// Cohen's d_z.
-    pub d_z: Option<f64>,
-    /// Confidence interval of d_z, at 1 - alpha.
-    pub d_z_interval: Option<Interval>,
-    /// Post hoc power of the test: its power if the true effect were the one found.
-    pub power: Option<f64>,
-    /// Number of participants needed to find a true difference as large as the bound with the requested power.
-    pub needed: Option<usize>,
-    /// Result of the two one-sided tests (TOST).
-    pub equivalence: Option<Equivalence>,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// The verdict as a sentence.
-    pub words: String,
+    pub difference: Opinion,
 }
 
 /// An analysed study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Study {
-    /// The options.
-    pub options: Options,
+    /// The method that the others are compared with.
+    pub baseline: String,
+    /// Lowest and highest rating.
+    pub scale: [f64; 2],
     /// Program, version and command that made the analysis.
     pub made_by: String,
     /// Number of participants.
@@ -110,34 +77,38 @@ pub struct Study {
 }
 
 impl Study {
-    /// Analyses ratings.
+    /// Analyses ratings on a scale from its lowest to its highest rating.
     ///
     /// # Errors
     /// [`StudyError::Nothing`] if the baseline or any other method is missing; [`StudyError::Interrupted`].
-    pub fn new(ratings: &Ratings, options: Options, made_by: String) -> Result<Study, StudyError> {
+    pub fn new(
+        ratings: &Ratings,
+        baseline: &str,
+        scale: [f64; 2],
+        made_by: String,
+    ) -> Result<Study, StudyError> {
         let methods: BTreeSet<&str> = ratings.rows.iter().map(|row| row.method.as_str()).collect();
         let nothing = |what: String| StudyError::Nothing { path: ratings.path.clone(), what };
         let named = || methods.iter().copied().collect::<Vec<_>>().join(", ");
-        if !methods.contains(options.baseline.as_str()) {
-            let what =
-                format!("nobody has rated {}: name one of {} as the baseline", options.baseline, named());
+        if !methods.contains(baseline) {
+            let what = format!("nobody has rated {baseline}: name one of {} as the baseline", named());
             return Err(nothing(what));
         }
         if methods.len() < 2 {
             return Err(nothing(format!("only {} was rated: rate another method, too", named())));
         }
-        let questions = unique(ratings.rows.iter().map(|row| row.question.as_str()));
         let mut study = Study {
+            baseline: baseline.into(),
+            scale,
             made_by,
             participants: ratings.rows.iter().map(|row| &row.participant).collect::<BTreeSet<_>>().len(),
             questions: Vec::new(),
             unanswered: Vec::new(),
-            options,
         };
-        for question in questions {
-            for method in methods.iter().filter(|method| **method != study.options.baseline) {
+        for question in unique(ratings.rows.iter().map(|row| row.question.as_str())) {
+            for method in methods.iter().filter(|method| **method != baseline) {
                 interrupt::check()?;
-                match compare(ratings, question, method, &study.options) {
+                match compare(ratings, question, method, baseline) {
                     Some(found) => study.questions.push(found),
                     None => study.unanswered.push((question.into(), (*method).into())),
                 }
@@ -149,9 +120,9 @@ impl Study {
 
 /// Compares a method with the baseline by the answers to one question. Returns `None` if nobody rated both in all
 /// scenes.
-fn compare(ratings: &Ratings, question: &str, method: &str, options: &Options) -> Option<Question> {
+fn compare(ratings: &Ratings, question: &str, method: &str, baseline_method: &str) -> Option<Question> {
     let rows = || ratings.rows.iter().filter(|row| row.question == question);
-    let of_pair = || rows().filter(|row| row.method == method || row.method == options.baseline);
+    let of_pair = || rows().filter(|row| row.method == method || row.method == baseline_method);
     let scenes: BTreeSet<&str> = of_pair().map(|row| row.scene.as_str()).collect();
     let mut answers: BTreeMap<&str, BTreeMap<(&str, &str), f64>> = BTreeMap::new();
     for row in &ratings.rows {
@@ -167,7 +138,7 @@ fn compare(ratings: &Ratings, question: &str, method: &str, options: &Options) -
                 scenes.iter().filter_map(|scene| answers.get(&(method, *scene)).copied()).collect();
             (found.iter().sum::<f64>() / found.len() as f64, found.len())
         };
-        let (ours, baseline) = (side(method), side(&options.baseline));
+        let (ours, baseline) = (side(method), side(baseline_method));
         if ours.1 == scenes.len() && baseline.1 == scenes.len() {
             participants.push((participant.to_owned(), ours.0, baseline.0));
             continue;
@@ -179,7 +150,7 @@ fn compare(ratings: &Ratings, question: &str, method: &str, options: &Options) -
                 .map(|scene| format!("{method} on {scene}"))
                 .collect::<Vec<_>>()
         };
-        let missing = [missing(method), missing(&options.baseline)].concat();
+        let missing = [missing(method), missing(baseline_method)].concat();
         let reason = match missing.len() {
             n if n == 2 * scenes.len() => "has not answered this question".into(),
             n if n > 4 => format!("has not rated {} and {} more", missing[..3].join(", "), n - 3),
@@ -187,92 +158,25 @@ fn compare(ratings: &Ratings, question: &str, method: &str, options: &Options) -
         };
         excluded.push(Excluded { participant: participant.into(), reason });
     }
-    let difference =
-        Sample::of_differences(participants.iter().map(|(_, ours, baseline)| (*ours, *baseline)))?;
-    let side = |value: fn(&(String, f64, f64)) -> f64| {
-        Sample::of(&participants.iter().map(value).collect::<Vec<_>>())
+    let values = |value: fn(&(String, f64, f64)) -> f64| {
+        Opinion::of(&participants.iter().map(value).collect::<Vec<_>>())
     };
-    let bounds = Interval { low: -options.bound, high: options.bound };
-    let equivalence = difference.equivalence(bounds, options.alpha);
-    let p = difference.p();
-    let verdict = match (p, equivalence) {
-        (Some(p), Some(tost)) => match (p < options.alpha, tost.equivalent) {
-            (false, true) => Verdict::Equivalent,
-            (true, true) => Verdict::SmallDifference,
-            (true, false) => Verdict::Different,
-            (false, false) => Verdict::Undecided,
-        },
-        _ => Verdict::Untestable,
-    };
-    let needed = (difference.std > 0.0)
-        .then(|| pairs_for_power(options.bound / difference.std, options.power, options.alpha))
-        .flatten();
     Some(Question {
         question: question.into(),
         method: method.into(),
         scenes: scenes.iter().map(|scene| scene.to_string()).collect(),
-        ours: side(|p| p.1)?,
-        baseline: side(|p| p.2)?,
+        ours: values(|p| p.1)?,
+        baseline: values(|p| p.2)?,
+        difference: values(|p| p.1 - p.2)?,
         excluded,
-        interval: difference.interval(1.0 - options.alpha),
-        t: difference.t(0.0),
-        p,
-        d_z: difference.d_z(),
-        d_z_interval: difference.d_z_interval(1.0 - options.alpha),
-        power: difference.power(options.alpha),
-        needed,
-        words: words(verdict, &difference, method, needed, options),
-        equivalence,
-        verdict,
-        difference,
         participants,
     })
-}
-
-fn words(
-    verdict: Verdict,
-    difference: &Sample,
-    method: &str,
-    needed: Option<usize>,
-    options: &Options,
-) -> String {
-    let Options { baseline, bound, power, .. } = options;
-    let better = if difference.mean > 0.0 { "higher" } else { "lower" };
-    let size = format!("{:.2}", difference.mean.abs());
-    match verdict {
-        Verdict::Equivalent => format!(
-            "Equivalent: {method} and {baseline} differ by less than {bound}, and not shown to differ at all."
-        ),
-        Verdict::SmallDifference => format!(
-            "A small difference: {method} is rated {better} by {size}, which is shown to be real, and to be less than {bound}."
-        ),
-        Verdict::Different => {
-            format!("Different: {method} is rated {better} by {size}, and not shown to be within {bound}.")
-        }
-        Verdict::Undecided => {
-            let more = match needed {
-                Some(needed) => format!(
-                    " To find a difference of {bound} with a power of {power} takes about {needed} participants of this scatter."
-                ),
-                None => String::new(),
-            };
-            format!("Undecided: neither a difference nor equivalence is shown.{more}")
-        }
-        Verdict::Untestable if difference.n < 2 => "Nothing can be tested with one participant.".into(),
-        Verdict::Untestable => {
-            format!("All participants differ by the same {size}: there is no scatter to test against.")
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::study::Row;
-
-    fn options() -> Options {
-        Options { baseline: "conventional".into(), scale: [1.0, 5.0], bound: 0.5, alpha: 0.05, power: 0.8 }
-    }
 
     /// Makes up ratings: for each participant two scenes, whose differences lie around the given one.
     fn made_up(differences: &[f64]) -> Vec<Row> {
@@ -294,48 +198,24 @@ mod tests {
     }
 
     fn study(rows: Vec<Row>) -> Study {
-        Study::new(&Ratings { path: "made-up.csv".into(), rows }, options(), "a test".into()).unwrap()
+        Study::new(&Ratings { path: "made-up.csv".into(), rows }, "conventional", [1.0, 5.0], "a test".into())
+            .unwrap()
     }
 
-    #[test]
-    fn verdicts_follow_t_test_and_tost() {
-        let verdict = |differences: &[f64]| study(made_up(differences)).questions[0].verdict;
-        assert_eq!(verdict(&[0.1, -0.1, 0.05, -0.05, 0.0, 0.02]), Verdict::Equivalent);
-        assert_eq!(verdict(&[0.1, 0.12, 0.11, 0.09, 0.1, 0.08]), Verdict::SmallDifference);
-        assert_eq!(verdict(&[-1.0, -1.2, -0.9, -1.1, -1.3]), Verdict::Different);
-        assert_eq!(verdict(&[-1.0, 1.2, -0.9, 1.5]), Verdict::Undecided);
-        assert_eq!(verdict(&[0.2]), Verdict::Untestable);
-        assert_eq!(verdict(&[0.25, 0.25, 0.25]), Verdict::Untestable);
-    }
-
-    /// From SciPy 1.17.1: ttest_1samp of these differences, its interval, and one-sided of -0.5 and 0.5.
+    /// From SciPy 1.17.1: the mean of these differences and the interval of ttest_1samp.
     #[test]
     fn figures_agree_with_scipy() {
         let study = study(made_up(&[0.2, -0.1, 0.4, 0.1, -0.3, 0.25]));
         let question = &study.questions[0];
         let near = |ours: f64, reference: f64| assert!((ours - reference).abs() < 1e-6, "{ours} {reference}");
-        near(question.difference.mean, SCIPY[0]);
-        near(question.t.unwrap(), SCIPY[1]);
-        near(question.p.unwrap(), SCIPY[2]);
-        let interval = question.interval.unwrap();
-        near(interval.low, SCIPY[3]);
-        near(interval.high, SCIPY[4]);
-        let tost = question.equivalence.unwrap();
-        near(tost.p_lower, SCIPY[5]);
-        near(tost.p_upper, SCIPY[6]);
-        assert_eq!((question.ours.n, study.participants), (6, 6));
-        near(question.baseline.mean, 3.0);
+        near(question.difference.sample.mean, 0.091666666667);
+        near(question.difference.median, 0.15);
+        let interval = question.difference.interval.unwrap();
+        near(interval.low, -0.174684702212);
+        near(interval.high, 0.358018035546);
+        assert_eq!((question.ours.sample.n, study.participants), (6, 6));
+        near(question.baseline.sample.mean, 3.0);
     }
-
-    const SCIPY: [f64; 7] = [
-        0.091666666667,
-        0.884683526344,
-        0.416835454317,
-        -0.174684702212,
-        0.358018035546,
-        0.001150627207,
-        0.005475211350,
-    ];
 
     #[test]
     fn incomplete_participants_are_named() {
@@ -357,7 +237,7 @@ mod tests {
         assert_eq!(named(image)[1], ("P04".into(), "has not answered this question".into()));
         // A participant without answers to one question still counts for another.
         assert_eq!(study.questions[1].participants[0].0, "P04");
-        assert_eq!(study.questions[1].verdict, Verdict::Untestable);
+        assert_eq!(study.questions[1].difference.interval, None);
     }
 
     #[test]
@@ -369,20 +249,24 @@ mod tests {
         for (method, naming) in
             [("yoro", "nobody has rated conventional"), ("conventional", "only conventional")]
         {
-            let error = Study::new(&ratings(only(method)), options(), String::new()).unwrap_err().to_string();
+            let study = Study::new(&ratings(only(method)), "conventional", [1.0, 5.0], String::new());
+            let error = study.unwrap_err().to_string();
             assert!(error.contains(naming) && error.contains("made-up.csv"), "{error}");
         }
     }
 
     #[test]
-    fn the_page_says_what_matters() {
+    fn the_report_says_what_matters() {
         let study = study(made_up(&[0.2, -0.1, 0.4, 0.1, -0.3, 0.25]));
-        let html = study.to_html().unwrap();
-        for needed in ["image quality", "Equivalent", "0.6196", "<svg", "TOST"] {
-            assert!(html.contains(needed), "{needed}");
-        }
-        let markdown = study.to_markdown();
-        assert!(markdown.contains("*0.6196*") && markdown.contains("Equivalent"), "{markdown}");
-        assert!(study.to_text().contains("image quality, yoro"), "{}", study.to_text());
+        let markdown = study.report().to_markdown();
+        let row = "| image quality | yoro | 6 | 3.09 ± 0.25 (3.15) | 3.00 ± 0.00 (3.00) | +0.092 [-0.175, +0.358] |";
+        assert!(markdown.contains(row) && markdown.contains("*+0.022 [-0.056, +0.101]*"), "{markdown}");
+        let text = study.to_text();
+        assert!(
+            text.contains(
+                "image quality, yoro: 3.09 against 3.00, +0.09 (95 % interval -0.17 to +0.36; n = 6)"
+            ),
+            "{text}"
+        );
     }
 }

@@ -12,9 +12,9 @@ mod ratings;
 
 use std::path::Path;
 
-use yoro_report::{ReportError, ReportFiles};
+use yoro_report::{Report, ReportError, ReportFiles};
 
-pub use analysis::{Excluded, Options, Question, Scale, Study, Verdict};
+pub use analysis::{Excluded, Opinion, Question, Study};
 pub use error::StudyError;
 pub use plan::{Condition, Plan, Trial, Trials, read_trials};
 pub use ratings::{Collected, Ratings, Row};
@@ -22,23 +22,15 @@ pub use ratings::{Collected, Ratings, Row};
 impl Study {
     /// Returns the files that [`Study::write`] writes into `folder`.
     pub fn files(folder: &Path) -> ReportFiles {
-        ReportFiles::of(folder, "study")
+        ReportFiles::of(folder, "study", true)
     }
 
-    /// Returns the analysis as a self-contained HTML page.
-    ///
-    /// # Errors
-    /// [`ReportError`] if a figure cannot be drawn.
-    pub fn to_html(&self) -> Result<String, ReportError> {
-        page::html(self)
+    /// Returns the analysis as readers see it.
+    pub fn report(&self) -> Report {
+        page::report(self)
     }
 
-    /// Returns the verdicts and all tables as Markdown.
-    pub fn to_markdown(&self) -> String {
-        page::markdown(self)
-    }
-
-    /// Returns the verdicts for a terminal.
+    /// Returns the means and differences for a terminal.
     pub fn to_text(&self) -> String {
         page::text(self)
     }
@@ -48,8 +40,6 @@ impl Study {
     /// # Errors
     /// [`ReportError`]. All three are made before the first one is written.
     pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
-        let files = Study::files(folder);
-        files.write(&self.to_html()?, &self.to_markdown(), &serde_json::to_string_pretty(self)?)?;
-        Ok(files)
+        self.report().write(folder, "study", Some(&serde_json::to_string_pretty(self)?))
     }
 }

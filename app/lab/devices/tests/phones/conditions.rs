@@ -2,7 +2,7 @@
 
 use indicatif::ProgressBar;
 use yoro_devices::adb::{self, Adb as _, Device};
-use yoro_devices::foreign::Subject;
+use yoro_devices::external_app::Subject;
 use yoro_devices::run::{Other, Plan};
 
 use super::experiments::small;

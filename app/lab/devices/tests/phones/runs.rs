@@ -7,7 +7,7 @@ use std::time::Duration;
 use indicatif::ProgressBar;
 use yoro_devices::adb::{Adb as _, Device, DeviceError};
 use yoro_devices::capture::{Capture, FaultKind, Outcome, RunInfo, Sample};
-use yoro_devices::foreign::Subject;
+use yoro_devices::external_app::Subject;
 use yoro_devices::held_settings::{HeldSettings, Wanted};
 use yoro_devices::phone;
 use yoro_devices::run::{self, Other, Plan};

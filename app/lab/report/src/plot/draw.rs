@@ -187,10 +187,7 @@ fn lane_offset(plot: &Plot, entry: usize, entries: usize) -> i32 {
 }
 
 /// Returns the elements that `draw` draws on a plot's area, without the document around them.
-fn layer(
-    plot: &Plot,
-    draw: impl FnOnce(&Area, &mut Chart) -> DrawingResult<()>,
-) -> DrawingResult<String> {
+fn layer(plot: &Plot, draw: impl FnOnce(&Area, &mut Chart) -> DrawingResult<()>) -> DrawingResult<String> {
     let mut svg = String::new();
     let root = SVGBackend::with_string(&mut svg, (WIDTH, height(plot))).into_drawing_area();
     let points = || plot.series.iter().flat_map(|series| &series.points).filter(|point| point.is_finite());
@@ -337,9 +334,22 @@ fn outline(look: &Look, (x, y): (i32, i32)) -> Vec<(i32, i32)> {
         Shape::Diamond => vec![(0.0, -1.45), (1.45, 0.0), (0.0, 1.45), (-1.45, 0.0)],
         Shape::Up => vec![(0.0, -1.35), (1.35, 1.0), (-1.35, 1.0)],
         Shape::Down => vec![(0.0, 1.35), (1.35, -1.0), (-1.35, -1.0)],
-        Shape::Cross => [(-1, -3), (0, -1), (1, -3), (3, -1), (1, 0), (3, 1), (1, 3), (0, 1), (-1, 3), (-3, 1), (-1, 0), (-3, -1)]
-            .map(|(x, y)| (0.42 * f64::from(x), 0.42 * f64::from(y)))
-            .to_vec(),
+        Shape::Cross => [
+            (-1, -3),
+            (0, -1),
+            (1, -3),
+            (3, -1),
+            (1, 0),
+            (3, 1),
+            (1, 3),
+            (0, 1),
+            (-1, 3),
+            (-3, 1),
+            (-1, 0),
+            (-3, -1),
+        ]
+        .map(|(x, y)| (0.42 * f64::from(x), 0.42 * f64::from(y)))
+        .to_vec(),
     };
     let scaled = |value: f64| (value * f64::from(MARK)).round() as i32;
     corners.into_iter().map(|(dx, dy)| (x + scaled(dx), y + scaled(dy))).collect()

@@ -35,7 +35,9 @@ fn rows_have_names_marks_and_lanes() {
     assert_eq!(plot.legend().len(), 1, "what is not finite is not drawn");
     let drawing = plot.draw(false).unwrap();
     assert!(drawing.svg.contains("a &lt;b&gt;") && !drawing.svg.contains("inf"));
-    let row = |drawing: &draw::Drawing, i: usize| serde_json::to_value(&drawing.points[i]).unwrap()["at"][1].as_i64().unwrap();
+    let row = |drawing: &draw::Drawing, i: usize| {
+        serde_json::to_value(&drawing.points[i]).unwrap()["at"][1].as_i64().unwrap()
+    };
     assert!(row(&drawing, 0) < row(&drawing, 1), "from top to bottom");
     let interval = Some(Interval { low: 0.4, high: 0.7 });
     plot.mark_interval("c", Entry::ours("yoro"), 0.5, interval);

@@ -14,8 +14,8 @@ use crate::cli::args::{self, parse_positive};
 use crate::cli::message;
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION, Writer};
+use yoro_devices::external_app::{ExternalApp, Subject};
 use yoro_devices::follow::{Event, Follower, faults_of_loss};
-use yoro_devices::foreign::{Foreign, Subject};
 use yoro_devices::log::{self, SIMULATED_MARK};
 use yoro_devices::mean_power::MeanPower;
 use yoro_devices::phone;
@@ -133,7 +133,7 @@ fn live(args: &LogcatArgs) -> anyhow::Result<()> {
     if args.package.is_some() {
         let process = args.log_process.as_deref().unwrap_or(package);
         let subject = Subject { package: package.into(), process: process.into() };
-        table.foreign = Some(Foreign::new(device, subject)?);
+        table.external_app = Some(ExternalApp::new(device, subject)?);
     }
     let done = follow(args, device, &mut follower, &mut table, began);
     // The capture records why it ended.
@@ -174,7 +174,7 @@ fn follow(
 struct Table<'a> {
     args: &'a LogcatArgs,
     reading: Reading,
-    foreign: Option<Foreign<'a>>,
+    external_app: Option<ExternalApp<'a>>,
     power: MeanPower,
     writer: Option<Writer>,
     own_faults: Vec<Fault>,
@@ -214,7 +214,7 @@ impl<'a> Table<'a> {
         Ok(Table {
             args,
             reading: Reading::new(None),
-            foreign: None,
+            external_app: None,
             power: MeanPower::default(),
             writer,
             own_faults: Vec::new(),
@@ -234,7 +234,7 @@ impl<'a> Table<'a> {
             self.simulated = true;
             println!("SIMULATED: {}", line.trim_matches(['-', ' ']));
         }
-        let is_own = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.accepts(line))?;
+        let is_own = self.external_app.as_mut().map_or(Ok(true), |app| app.accepts(line))?;
         let news = if is_own { self.reading.line(line, passed_s) } else { LineContent::Other };
         match news {
             LineContent::Sample(sample) => self.sample(*sample)?,
@@ -248,8 +248,8 @@ impl<'a> Table<'a> {
     }
 
     fn sample(&mut self, mut sample: Sample) -> anyhow::Result<()> {
-        if let Some(foreign) = &mut self.foreign {
-            foreign.complete(&mut sample, &mut self.reading)?;
+        if let Some(app) = &mut self.external_app {
+            app.complete(&mut sample, &mut self.reading)?;
         }
         self.power.add(&sample);
         if let Some(writer) = &mut self.writer {
@@ -317,8 +317,8 @@ impl<'a> Table<'a> {
         if let Some(last) = self.reading.end() {
             self.sample(last)?;
         }
-        if let (Some(foreign), 0) = (&self.foreign, self.reading.samples()) {
-            println!("{}", foreign.silence());
+        if let (Some(app), 0) = (&self.external_app, self.reading.samples()) {
+            println!("{}", app.silence());
         }
         let own = self.own_faults.iter().cloned();
         let faults: Vec<Fault> = own.chain(self.reading.faults()).chain(self.power.fault()).collect();

@@ -9,7 +9,7 @@ use crate::cli::Subcommand;
 use crate::cli::args::{self, parse_positive};
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::Outcome;
-use yoro_devices::foreign::Subject;
+use yoro_devices::external_app::Subject;
 use yoro_devices::held_settings::Wanted;
 use yoro_devices::run::{self, Other, Plan};
 use yoro_files::interrupt;

@@ -1,104 +1,54 @@
 //! The report's result for each method, as a sentence.
 
-use serde::Serialize;
-
 use super::format::{NO_SCATTER, change, change_format, count, number, signed, without_scatter};
 use crate::capture::FaultKind;
-use crate::report::{CONFIDENCE, DeviceReport, Quantity};
-use yoro_report::inference::{Basis, BlockInterval, Interval};
+use crate::report::{CONFIDENCE, Device, DeviceReport, Difference, Quantity};
+use yoro_report::{Basis, BlockInterval, Interval};
 
-/// The result of a method on a device: how much a quantity has changed, from which value to which, and the interval.
-#[derive(Serialize)]
-pub struct Answer {
-    device: String,
-    method: String,
-    changes: Vec<AnswerChange>,
-    how_sure: String,
+/// Returns the results of all methods on all devices: by how much power and frame rate have changed, from which value to
+/// which, and how sure that is.
+pub fn answers(report: &DeviceReport) -> Vec<String> {
+    let compared = report.devices.iter().flat_map(|device| {
+        let methods = device.methods.iter().filter(|method| **method != report.baseline);
+        methods.map(move |method| (device, method))
+    });
+    compared.map(|(device, method)| answer(report, device, method)).collect()
 }
 
-#[derive(Serialize)]
-pub struct AnswerChange {
-    /// The change, such as `-22.7 %`, or a dash if there is no pair.
-    change: String,
-    name: &'static str,
-    /// `1939 mW instead of 2510 mW`.
-    values: String,
-    /// The interval, such as `95 % interval -24.1 to -21.3 %`. Empty if there is none.
-    interval: String,
-}
-
-impl Answer {
-    /// Returns the result as a sentence.
-    pub fn sentence(&self) -> String {
-        let change = |c: &AnswerChange| {
-            let interval = if c.interval.is_empty() { String::new() } else { format!(", {}", c.interval) };
-            format!("{} {} ({}{interval})", c.name, c.change, c.values)
+fn answer(report: &DeviceReport, device: &Device, method: &str) -> String {
+    let find = |quantity| report.find(Some(&device.name), None, method, quantity);
+    let changes = [Quantity::Power, Quantity::Fps].map(|quantity| match find(quantity) {
+        None => format!("{} – (no two runs to compare)", quantity.name()),
+        Some(found) => format!("{} **{}** ({})", quantity.name(), change(found), values(found)),
+    });
+    let of_device = report.runs_of(device).flat_map(|run| &run.faults);
+    let wrong = of_device.filter(|fault| fault.kind == FaultKind::Pictures).map(|fault| {
+        format!("WRONG PICTURES on this device, so its figures mean nothing ({}). ", fault.detail)
+    });
+    let doubt = wrong.take(1).collect::<String>();
+    let found = find(Quantity::Power).or(find(Quantity::Fps));
+    let how_sure = found.map_or("No run of it has a partner.".into(), |found| {
+        let scenes = report.scenes_of(&device.name, method, found.quantity);
+        let basis = match found.interval.map(|interval| interval.basis) {
+            None => "nothing was repeated, so there is no interval",
+            Some(Basis::Repetitions) => "intervals rest on the repetitions",
+            Some(Basis::Blocks) => "every scene was measured once, so intervals rest on the scenes",
         };
-        let changes: Vec<String> = self.changes.iter().map(change).collect();
-        format!("{}, {}: {}. {}", self.device, self.method, changes.join("; "), self.how_sure)
-    }
+        format!("{} of runs on {}; {basis}.", count(found.pairs, "pair"), count(scenes, "scene"))
+    });
+    format!("{}, {method}: {}. {doubt}{how_sure}", device.name, changes.join("; "))
 }
 
-/// Returns the results of all methods on all devices.
-pub fn answers(report: &DeviceReport) -> Vec<Answer> {
-    let mut answers = Vec::new();
-    for device in &report.devices {
-        for method in device.methods.iter().filter(|method| **method != report.baseline) {
-            let find = |quantity| report.find(Some(&device.name), None, method, quantity);
-            let changes = [Quantity::Power, Quantity::Fps].map(|quantity| match find(quantity) {
-                None => AnswerChange {
-                    change: "–".into(),
-                    name: quantity.name(),
-                    values: "no two runs to compare".into(),
-                    interval: String::new(),
-                },
-                Some(d) => {
-                    let (decimals, unit) = change_format(d);
-                    let value = |value| format!("{} {}", number(quantity, value), quantity.unit());
-                    let interval =
-                        d.interval.map(|BlockInterval { interval: Interval { low, high }, .. }| {
-                            if without_scatter(low, high) {
-                                return NO_SCATTER.to_owned();
-                            }
-                            let confidence = 100.0 * CONFIDENCE;
-                            let (low, high) = (signed(low, decimals), signed(high, decimals));
-                            format!("{confidence:.0} % interval {low} to {high} {unit}")
-                        });
-                    AnswerChange {
-                        change: change(d),
-                        name: quantity.name(),
-                        values: format!("{} instead of {}", value(d.ours), value(d.baseline)),
-                        interval: interval.unwrap_or_default(),
-                    }
-                }
-            });
-            let found = find(Quantity::Power).or(find(Quantity::Fps));
-            let how_sure = found.map_or("No run of it has a partner.".into(), |d| {
-                let scenes = report.scenes_of(&device.name, method, d.quantity);
-                let basis = match d.interval {
-                    None => "nothing was repeated, so there is no interval",
-                    Some(BlockInterval { basis: Basis::Repetitions, .. }) => {
-                        "intervals rest on the repetitions"
-                    }
-                    Some(BlockInterval { basis: Basis::Blocks, .. }) => {
-                        "every scene was measured once, so intervals rest on the scenes"
-                    }
-                };
-                let (pairs, scenes) = (count(d.pairs, "pair"), count(scenes, "scene"));
-                format!("{pairs} of runs on {scenes}; {basis}.")
-            });
-            let of_device = report.runs.iter().filter(|run| run.device == device.name);
-            let wrong = of_device.flat_map(|run| &run.faults).find(|fault| fault.kind == FaultKind::Pictures);
-            let how_sure = match wrong {
-                Some(fault) => format!(
-                    "WRONG PICTURES on this device, so its figures mean nothing ({}). {how_sure}",
-                    fault.detail
-                ),
-                None => how_sure,
-            };
-            let (device, method) = (device.name.clone(), method.clone());
-            answers.push(Answer { device, method, changes: changes.into(), how_sure });
+/// Returns both values and the interval of the change: `406 mW instead of 500 mW, 95 % interval -22.0 to -15.3 %`.
+fn values(found: &Difference) -> String {
+    let value = |value| format!("{} {}", number(found.quantity, value), found.quantity.unit());
+    let interval = found.interval.map(|BlockInterval { interval: Interval { low, high }, .. }| {
+        if without_scatter(low, high) {
+            return format!(", {NO_SCATTER}");
         }
-    }
-    answers
+        let (decimals, unit) = change_format(found);
+        let (low, high) = (signed(low, decimals), signed(high, decimals));
+        format!(", {:.0} % interval {low} to {high} {unit}", 100.0 * CONFIDENCE)
+    });
+    format!("{} instead of {}{}", value(found.ours), value(found.baseline), interval.unwrap_or_default())
 }

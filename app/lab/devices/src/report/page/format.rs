@@ -1,7 +1,7 @@
 //! Formats numbers for the report.
 
 use crate::report::{Difference, Quantity};
-use yoro_report::inference::{Basis, BlockInterval, Interval};
+use yoro_report::{Basis, BlockInterval, Interval};
 
 /// Mark behind an interval that is based on the scatter of scenes or devices.
 pub const OVER_BLOCKS: &str = " †";

@@ -1,95 +1,56 @@
-//! The report's sentences, tables and figures.
+//! What the report consists of.
 
 mod answers;
-mod figures;
 mod format;
+mod plots;
 mod tables;
 
 use std::fmt::Write as _;
 
-use minijinja::context;
-
 use super::run::LEAST_COVERED;
 use super::{Device, DeviceReport, Difference, Quantity, Run};
-use answers::{Answer, answers};
-use figures::{change_figures, trace_figures};
+use answers::answers;
+use plots::{change_plots, trace_plots};
 use tables::{device_tables, notes_table, overview_tables};
-use yoro_report::ReportError;
-use yoro_report::page::{Template, figures, fill};
+use yoro_report::{Report, Section, Text};
 
 pub(super) use format::count;
 
 /// Label of the mean over all scenes of a device.
 const ALL_SCENES: &str = "all scenes";
-const TEMPLATE: Template =
-    Template { name: "device.html.j2", text: include_str!("../../templates/device.html.j2") };
 
-pub(super) fn html(report: &DeviceReport) -> Result<String, ReportError> {
-    let device = |(index, device): (usize, &Device)| -> Result<minijinja::Value, ReportError> {
-        let traces = device.scenes.iter().enumerate().map(|(scene, name)| {
-            let traces = trace_figures(report, device, &format!("device-{index}-scene-{scene}"), name);
-            Ok(context! { scene => name, figures => figures(&traces)? })
-        });
-        Ok(context! {
-            id => format!("device-{index}"),
-            name => &device.name,
-            facts => facts(report, device),
-            figures => figures(&change_figures(report, device, &format!("device-{index}")))?,
-            tables => device_tables(report, device),
-            traces => traces.collect::<Result<Vec<_>, ReportError>>()?,
-        })
-    };
-    let page = context! {
-        simulated => report.simulated,
-        baseline => &report.baseline,
-        warnings => warnings(report),
-        answers => answers(report),
-        overview => overview_tables(report),
-        devices => report.devices.iter().enumerate().map(device).collect::<Result<Vec<_>, _>>()?,
-        left_out => notes_table("What does not count", &report.left_out, simulated_mark(report)),
-        faults => notes_table("What went wrong", &report.faults, simulated_mark(report)),
-        method => method_notes(report),
-        made_by => &report.made_by,
-    };
-    fill(TEMPLATE, &title(report), page)
-}
-
-pub(super) fn markdown(report: &DeviceReport) -> String {
-    let mut out = format!("# {}\n\n", title(report));
-    for warning in warnings(report) {
-        let _ = writeln!(out, "**{warning}**\n");
-    }
-    for answer in answers(report) {
-        let _ = writeln!(out, "- {}", answer.sentence());
-    }
-    out.push('\n');
-    for table in overview_tables(report) {
-        let _ = writeln!(out, "{}", table.markdown());
-    }
+pub(super) fn report(report: &DeviceReport) -> Report {
+    let mark = simulated_mark(report);
+    let mut sections = Vec::new();
+    let mut overview = Section::new(format!("Change per device{mark}"), "");
+    overview_tables(report).into_iter().for_each(|table| overview.table(table));
+    sections.extend(Some(overview).filter(|overview| !overview.is_empty()));
     for device in &report.devices {
-        let _ = writeln!(out, "## {}\n\n{}\n", device.name, facts(report, device));
-        for table in device_tables(report, device) {
-            let _ = writeln!(out, "{}", table.markdown());
+        let mut section = Section::new(&device.name, "");
+        section.text(Text::quiet(facts(report, device)));
+        change_plots(report, device).into_iter().for_each(|plot| section.plot(plot));
+        device_tables(report, device).into_iter().for_each(|table| section.table(table));
+        for scene in &device.scenes {
+            trace_plots(report, device, scene).into_iter().for_each(|plot| section.plot(plot));
         }
+        sections.push(section);
     }
-    for table in [
-        notes_table("What does not count", &report.left_out, simulated_mark(report)),
-        notes_table("What went wrong", &report.faults, simulated_mark(report)),
-    ] {
-        let _ = writeln!(out, "{}", table.markdown());
-    }
-    let _ = writeln!(out, "## How to read this\n");
-    for note in method_notes(report) {
-        let _ = writeln!(out, "- {note}");
-    }
-    let _ = writeln!(out, "\n{}", report.made_by);
-    out
+    let mut doubts = Section::new(format!("What does not count, and what went wrong{mark}"), "");
+    doubts.table(notes_table("What does not count", &report.left_out, mark));
+    doubts.table(notes_table("What went wrong", &report.faults, mark));
+    let mut method = Section::new("How to read this", "");
+    method_notes(report).into_iter().for_each(|note| method.text(note));
+    method.text(Text::quiet(format!("`{}`", report.made_by)));
+    sections.extend([doubts, method]);
+    let warnings = warnings(report).into_iter().map(Text::warning);
+    let summary = warnings.chain(answers(report).into_iter().map(Text::from)).collect();
+    Report { title: title(report), summary, sections }
 }
 
 pub(super) fn text(report: &DeviceReport) -> String {
     let mut out = String::new();
-    for line in warnings(report).into_iter().chain(answers(report).iter().map(Answer::sentence)) {
-        let _ = writeln!(out, "{line}");
+    for line in warnings(report).into_iter().chain(answers(report)) {
+        let _ = writeln!(out, "{}", line.replace("**", ""));
     }
     let runs = report.runs.len();
     let whole = report.runs.iter().filter(|run| run.exclusions.is_empty()).count();

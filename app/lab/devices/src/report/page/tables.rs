@@ -6,9 +6,9 @@ use super::format::{NO_SCATTER, OVER_BLOCKS, change, change_interval, number, wi
 use super::{ALL_SCENES, simulated_mark};
 use crate::report::run::{COUNTER_TOLERANCE, PAPER_VOLTS};
 use crate::report::{CONFIDENCE, Device, DeviceReport, Difference, Note, Quantity, Run};
-use yoro_report::grid::{Cell, Table};
-use yoro_report::paper;
+use yoro_report::paper::{self, PAPER, PaperDevice, PaperScene};
 use yoro_report::stats::unique;
+use yoro_report::{Cell, Table};
 use yoro_scenes::BUILTINS;
 
 const FIRST_HALF: [Quantity; 5] =
@@ -32,7 +32,7 @@ pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
             columns.push(if i == 0 { "mean of the devices" } else { "mean of the simulated" }.into());
         }
         // The paper has this table only for its own method.
-        let papers: &[paper::PaperDevice] = if method.starts_with("yoro") { &paper::DEVICES } else { &[] };
+        let papers: &[PaperDevice] = if method.starts_with("yoro") { &PAPER.devices } else { &[] };
         columns.extend(papers.iter().map(|device| format!("{}, the paper's", device.name)));
         let mut table =
             Table::new(format!("{method}: change per device{}", simulated_mark(report)), &columns);
@@ -44,7 +44,7 @@ pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
         cells.extend((0..mean_columns).map(|_| Cell::plain("")));
         cells.extend(papers.iter().map(|d| Cell::paper(capacity(Some(d.capacity_mah)))));
         table.push(cells);
-        type Printed = fn(&paper::PaperDevice) -> f64;
+        type Printed = fn(&PaperDevice) -> f64;
         for (name, quantity, printed) in [
             ("power", Quantity::Power, (|d| d.power) as Printed),
             ("frame rate", Quantity::Fps, |d| d.fps),
@@ -126,8 +126,8 @@ fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantit
             }
             if with_paper {
                 let papers = papers_changes(scene, method);
-                cells.push(Cell::paper(papers.map(|(power, _)| format!("{power:+.1} %"))));
-                cells.push(Cell::paper(papers.map(|(_, fps)| format!("{fps:+.1} %"))));
+                cells.push(Cell::paper(papers.as_ref().map(|papers| format!("{:+.1} %", papers.power))));
+                cells.push(Cell::paper(papers.map(|papers| format!("{:+.1} %", papers.fps))));
             }
             table.push_grouped(cells, std::mem::take(&mut first));
         }
@@ -140,28 +140,32 @@ fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantit
     table
 }
 
-/// Returns the paper's change of power and frame rate against conventional rendering, in percent, for the system and
-/// scene that correspond to a method and a scene. `None` for the scene stands for the mean over all scenes.
-pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<(f64, f64)> {
-    let column = match method {
-        "hybrid" => 2,
-        _ if method.starts_with("yoro") => 0,
-        _ => return None,
-    };
-    let fps = |s: &paper::PaperScene| [s.fps_yoro, s.fps_conventional, s.fps_fink];
+/// The paper's change against conventional rendering in percent.
+pub struct PapersChange {
+    /// Change of power.
+    pub power: f64,
+    /// Change of the frame rate.
+    pub fps: f64,
+}
+
+/// Returns the paper's change for the system and scene that correspond to a method and a scene. `None` for the scene
+/// stands for the mean over all scenes.
+pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<PapersChange> {
+    let system = if method.starts_with("yoro") { "yoro-paper" } else { method };
+    let at = paper::SYSTEMS.iter().position(|name| *name == system).filter(|at| *at != 1)?;
     let (power, fps) = match scene {
         Some(scene) => {
-            let stands_for = BUILTINS.iter().find(|builtin| builtin.name == scene)?.stands_for;
-            let at = paper::SCENES.iter().position(|s| s.name == stands_for)?;
-            (paper::POWER[at], fps(&paper::SCENES[at]))
+            let builtin = BUILTINS.iter().find(|builtin| builtin.name == scene)?;
+            let PaperScene { power, fps, .. } = paper::find(builtin.stands_for)?;
+            (*power, *fps)
         }
         None => {
-            let mean = |column: usize| paper::POWER.iter().map(|row| row[column]).sum::<f64>() / 8.0;
-            ([mean(0), mean(1), mean(2)], fps(&paper::AVERAGE))
+            let mean = |at: usize| PAPER.scenes.iter().map(|scene| scene.power[at]).sum::<f64>() / 8.0;
+            ([mean(0), mean(1), mean(2)], PAPER.average.fps)
         }
     };
-    let change = |values: [f64; 3]| 100.0 * (values[column] / values[1] - 1.0);
-    Some((change(power), change(fps)))
+    let change = |values: [f64; 3]| 100.0 * (values[at] / values[1] - 1.0);
+    Some(PapersChange { power: change(power), fps: change(fps) })
 }
 
 fn mean_table(report: &DeviceReport, device: &Device, quantities: [Quantity; 5]) -> Table {
@@ -269,7 +273,7 @@ fn power_table(report: &DeviceReport, device: &Device) -> Table {
 pub fn notes_table(title: &str, notes: &[Note], mark: &str) -> Table {
     let mut table = Table::new(format!("{title}{mark}"), &["<what", "<where", "<in detail"]);
     for note in notes {
-        table.push(vec![Cell::plain(note.name), Cell::plain(&note.of), Cell::plain(&note.detail)]);
+        table.push(vec![Cell::plain(note.name), Cell::long(&note.of), Cell::long(&note.detail)]);
     }
     if notes.is_empty() {
         table.push(vec![Cell::plain("nothing"), Cell::plain(""), Cell::plain("")]);

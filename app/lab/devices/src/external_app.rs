@@ -25,30 +25,30 @@ pub struct Subject {
 }
 
 /// Finds the log lines of another application, and adds the battery's values.
-pub struct Foreign<'a> {
+pub struct ExternalApp<'a> {
     device: &'a dyn Device,
     subject: Subject,
     processes: Vec<u32>,
     /// Time of the last look-up.
     processes_s: f64,
     /// Processes whose lines were ignored.
-    strangers: BTreeSet<u32>,
+    other_pids: BTreeSet<u32>,
     battery: Battery,
     battery_s: f64,
     kernel_is_open: Option<bool>,
     normalizer: CurrentNormalizer,
 }
 
-impl<'a> Foreign<'a> {
+impl<'a> ExternalApp<'a> {
     /// Starts to follow an application.
-    pub fn new(device: &'a dyn Device, subject: Subject) -> Result<Foreign<'a>, DeviceError> {
+    pub fn new(device: &'a dyn Device, subject: Subject) -> Result<ExternalApp<'a>, DeviceError> {
         let mut kernel_is_open = None;
-        Ok(Foreign {
+        Ok(ExternalApp {
             device,
             subject,
             processes: Vec::new(),
             processes_s: f64::NEG_INFINITY,
-            strangers: BTreeSet::new(),
+            other_pids: BTreeSet::new(),
             battery: phone::battery_now(device, &mut kernel_is_open)?,
             battery_s: device.now(),
             kernel_is_open,
@@ -72,7 +72,7 @@ impl<'a> Foreign<'a> {
         }
         let is_own = self.processes.contains(&pid);
         if !is_own {
-            self.strangers.insert(pid);
+            self.other_pids.insert(pid);
         }
         Ok(is_own)
     }
@@ -111,7 +111,7 @@ impl<'a> Foreign<'a> {
     /// Returns a sentence on why no lines may have been found.
     pub fn silence(&self) -> String {
         let Subject { package, process } = &self.subject;
-        if self.strangers.is_empty() {
+        if self.other_pids.is_empty() {
             return format!(
                 "Meta's runtime has logged no frame rate (tag {VRAPI_TAG}) since {package} was started"
             );
@@ -120,7 +120,7 @@ impl<'a> Foreign<'a> {
             let name = self.device.shell(&["cat", &format!("/proc/{pid}/cmdline")]).unwrap_or_default();
             format!("{pid} {}", name.trim_matches(['\0', '\n', ' ']))
         };
-        let names: Vec<String> = self.strangers.iter().map(|pid| name(pid).trim().to_owned()).collect();
+        let names: Vec<String> = self.other_pids.iter().map(|pid| name(pid).trim().to_owned()).collect();
         format!(
             "the process {process} has logged no frame rate (tag {VRAPI_TAG}), only others have ({}): where one of them \
              is the runtime, name that process",

@@ -1,0 +1,75 @@
+//! The report's plots.
+
+use super::ALL_SCENES;
+use super::tables::papers_changes;
+use crate::report::{CONFIDENCE, Device, DeviceReport, Quantity, Run};
+use yoro_report::{Axis, Entry, Plot};
+
+/// Returns plots of the changes of power, frame rate and temperature by scene, with intervals.
+pub fn change_plots(report: &DeviceReport, device: &Device) -> Vec<Plot> {
+    let quantities = [Quantity::Power, Quantity::Fps, Quantity::Temperature].into_iter();
+    let is_measured = |quantity: &Quantity| {
+        report.differences.iter().any(|d| d.device.as_ref() == Some(&device.name) && d.quantity == *quantity)
+    };
+    quantities.filter(is_measured).map(|quantity| change_plot(report, device, quantity)).collect()
+}
+
+fn change_plot(report: &DeviceReport, device: &Device, quantity: Quantity) -> Plot {
+    let unit = if quantity.is_ratio() { "%" } else { "K" };
+    let (name, mark) = (format!("{} against {}", quantity.name(), report.baseline), simulated(device));
+    let axis = Axis::new(format!("{name}, {unit}{mark}")).baseline(0.0);
+    let mut plot = Plot::rows(format!("{name}{mark}"), axis).caption(format!(
+        "Bars: {:.0} % intervals. The line is {}. Hollow: the paper's, for its own scenes and devices.",
+        100.0 * CONFIDENCE,
+        report.baseline
+    ));
+    for scene in device.scenes.iter().map(|scene| Some(scene.as_str())).chain([None]) {
+        let row = scene.unwrap_or(ALL_SCENES);
+        for method in device.methods.iter().filter(|method| **method != report.baseline) {
+            if let Some(ours) = report.find(Some(&device.name), scene, method, quantity) {
+                let interval = ours.interval.map(|found| found.interval);
+                plot.mark_interval(row, Entry::ours(method), ours.change, interval);
+            }
+            let papers = papers_changes(scene, method).and_then(|papers| match quantity {
+                Quantity::Power => Some(papers.power),
+                Quantity::Fps => Some(papers.fps),
+                _ => None,
+            });
+            let entry = match method.as_str() {
+                "hybrid" => Entry::papers("hybrid", "the paper's Fink et al."),
+                _ => Entry::papers("yoro-paper", "the paper's YORO"),
+            };
+            plot.mark(row, entry, papers.unwrap_or(f64::NAN));
+        }
+    }
+    plot
+}
+
+fn simulated(device: &Device) -> &'static str {
+    if device.simulated { " (simulated)" } else { "" }
+}
+
+/// Returns plots of power, frame rate and temperature over time in a scene, with a thin line for each run that counts.
+pub fn trace_plots(report: &DeviceReport, device: &Device, scene: &str) -> Vec<Plot> {
+    let mark = simulated(device);
+    let quantities = [
+        (Quantity::Power, (|run: &Run| &run.traces.power) as fn(&Run) -> &Vec<(f64, f64)>),
+        (Quantity::Fps, |run| &run.traces.fps),
+        (Quantity::Temperature, |run| &run.traces.temperature),
+    ];
+    let plot = |(quantity, values): (Quantity, fn(&Run) -> &Vec<(f64, f64)>)| {
+        let y = Axis::new(format!("{}, {}{mark}", quantity.name(), quantity.unit()));
+        let y = if quantity == Quantity::Temperature { y } else { y.from_zero() };
+        let title = format!("{scene}: {} over time{mark}", quantity.name());
+        let mut plot = Plot::traces(title, Axis::new("seconds since the run began"), y)
+            .caption("A line for each run that counts, warm-up left out.");
+        let of_scene = report.runs_of(device).filter(|run| run.scene == scene && run.counts(quantity));
+        let mut runs: Vec<&Run> = of_scene.collect();
+        runs.sort_by_key(|run| &run.method);
+        for run in runs {
+            plot.curve(Entry::ours(&run.method), values(run).iter().copied());
+        }
+        plot
+    };
+    quantities.map(plot).into()
+}
