@@ -261,7 +261,7 @@ impl<'a> Run<'a> {
                 let label = self.label(&job);
                 let name = match &job.names[..] {
                     [name] => format!("{label} {name}"),
-                    names if names.is_empty() => label.to_owned(),
+                    [] => label.to_owned(),
                     names => format!("{label}, {} tests", names.len()),
                 };
                 summary.add(label, &name, &finished);
