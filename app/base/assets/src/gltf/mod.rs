@@ -27,7 +27,7 @@ use self::primitive::transform;
 use self::reader::Reader;
 use super::error::{MAX_ELEMENTS, SceneError};
 use super::load::Loaded;
-use super::model::{Material, Model, PointLight, Sky, Viewpoint};
+use super::model::{Material, PointLight, Sky, Viewpoint};
 use super::motion::{Motion, MovingLight};
 use super::palette::{paint, palette};
 use super::repair::{RawMesh, assemble};
