@@ -234,12 +234,17 @@ impl<W: WarpKind> Pipeline<W> {
             gl.draw_screen();
         });
         let march = gl.pass(shaders.march).read("depth_map", depth).read("color_map", color);
-        let march = march.read("tile_map", tile_map).read("span_map", span_map);
+        let mut march = march.read("tile_map", tile_map).read("span_map", span_map);
+        let bloom = source.bloom.filter(|_| self.options.bloom);
+        if bloom.is_some() {
+            // Its size is not known here; a blurred image needs no more than half the pixels along each axis.
+            march = march.read("bloom", Image { size: color.size.map(|n| n.div_ceil(2)), ..color });
+        }
         march.write(target_images(target, self.outputs)).run(|| {
             begin(&self.march);
             self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
             self.march.texture("span_map", 3, self.span_map.color(0).raw());
-            if let Some(Bloom { texture, strength }) = source.bloom.filter(|_| self.options.bloom) {
+            if let Some(Bloom { texture, strength }) = bloom {
                 self.march.texture("bloom", 4, texture).set("bloom_strength", strength);
             }
             draw_target(gl, target, self.outputs);
