@@ -88,11 +88,9 @@ mod tests {
 
     #[test]
     fn texts_round_trip_and_others_are_refused() {
-        for (text, band) in [
-            ("none", GuardBand::None),
-            ("40px", GuardBand::Pixels(40)),
-            ("0.5", GuardBand::Distance(0.5)),
-        ] {
+        for (text, band) in
+            [("none", GuardBand::None), ("40px", GuardBand::Pixels(40)), ("0.5", GuardBand::Distance(0.5))]
+        {
             assert_eq!((text.parse(), band.to_string().as_str()), (Ok(band), text));
         }
         for text in ["", "auto", "0", "0px1", "2000px", "-1", "Auto", "1 m"] {
