@@ -344,7 +344,7 @@ fn controllers_switch_methods() {
     let button = [input(10, "right/input/a/click", 1.0), input(12, "right/input/a/click", 0.0)];
     for (controller, inputs, expected) in [
         ("oculus/touch_controller", [&button[..], &stick].concat(), &["auto", "yoro", "auto"][..]),
-        ("bytedance/pico4_controller", stick.to_vec(), &["auto", "conventional"]),
+        ("bytedance/pico4_controller", stick.to_vec(), &["auto", "mono"]),
     ] {
         let script = Script {
             profile: Some(format!("/interaction_profiles/{controller}")),
@@ -563,18 +563,15 @@ fn with_insets(cant_degrees: f32) -> Script {
     script
 }
 
-/// With the extension and with OpenXR 1.1 alone, for parallel and for canted eyes. A headset's foveation is `medium`, unless the
-/// settings say otherwise.
+/// With the extension and with OpenXR 1.1 alone, for parallel and for canted eyes.
 #[test]
 fn four_views_are_submitted_where_the_runtime_has_insets() {
-    for (cant_degrees, missing, foveation) in
-        [(0.0, None, "--set foveation=high"), (5.0, Some("XR_VARJO_quad_views"), "")]
-    {
+    for (cant_degrees, missing) in [(0.0, None), (5.0, Some("XR_VARJO_quad_views"))] {
         let missing_extensions = missing.into_iter().map(str::to_owned).collect();
         let script = Script { missing_extensions, ..with_insets(cant_degrees) };
         let [real, made] = ["conventional", "yoro"].map(|method| {
             let simulated = Simulated::new(&script);
-            let run = simulated.succeed(&format!("--method {method} --frames 8 {foveation} --json"));
+            let run = simulated.succeed(&format!("--method {method} --frames 8 --set foveation=high --json"));
             assert_eq!(
                 (&run.json()["views"], &run.json()["inset-size"]),
                 (&json!("quad"), &json!([112, 112]))
@@ -607,11 +604,15 @@ fn four_views_are_submitted_where_the_runtime_has_insets() {
     }
 }
 
+/// A headset's foveation is `medium` unless the settings say otherwise.
 #[test]
-fn whole_eyes_are_submitted_if_the_settings_say_so() {
-    let simulated = Simulated::new(&with_insets(0.0));
-    simulated.succeed("--frames 1 --set foveation=off");
-    assert!(simulated.views().iter().all(|(_, views)| views.len() == 2));
+fn the_eyes_are_foveated_unless_the_settings_say_otherwise() {
+    for (settings, count) in [("", 4), ("--set foveation=off", 2)] {
+        let events = vec![event(At::Frame(12), What::Exit)];
+        let simulated = Simulated::new(&Script { events, ..with_insets(0.0) });
+        simulated.succeed(settings);
+        assert!(simulated.views().iter().all(|(_, views)| views.len() == count), "{settings}");
+    }
 }
 
 /// Without insets of the runtime, each eye is composed of its levels before it is submitted.

@@ -51,7 +51,23 @@ pub fn fetch() -> anyhow::Result<PathBuf> {
 pub fn build_host() -> anyhow::Result<PathBuf> {
     let folder = folder()?;
     let system = System::make(&folder)?;
-    let program = build(&system, &folder.join("build"))?;
+    let target = folder.join("build");
+    let mut cargo = command(&system, Panic::Abort)?;
+    cargo.args([
+        "build",
+        "--package",
+        "yoro-android-host",
+        "--package",
+        "yoro-openxr-stub",
+        "--target",
+        TRIPLE,
+    ]);
+    cargo.env("CARGO_TARGET_DIR", &target).env("CARGO_PROFILE_DEV_PANIC", "abort");
+    eprintln!("$ cargo build --package yoro-android-host --target {TRIPLE}");
+    if !cargo.status().context("cargo cannot be started")?.success() {
+        bail!("the simulated Android host does not compile for arm64: see above");
+    }
+    let program = target.join(TRIPLE).join("debug/yoro-android-host");
     let launcher = folder.join("yoro-android-host");
     let words = system.arguments().map(|argument| quoted(Path::new(&argument)));
     let text = format!(
@@ -98,15 +114,9 @@ impl System {
     /// Returns qemu's arguments before a program's path. This machine's libraries cannot be used, nor its GPU: qemu does
     /// not support the system calls of graphics drivers.
     fn arguments(&self) -> [OsString; 6] {
-        let [unset, set, root] = ["-U", "-E", "-L"].map(OsString::from);
-        [
-            unset,
-            "LD_LIBRARY_PATH".into(),
-            set,
-            "LIBGL_ALWAYS_SOFTWARE=1".into(),
-            root,
-            self.root.clone().into(),
-        ]
+        let fixed = ["-U", "LD_LIBRARY_PATH", "-E", "LIBGL_ALWAYS_SOFTWARE=1", "-L"].map(OsString::from);
+        let [unset, path, set, software, from] = fixed;
+        [unset, path, set, software, from, self.root.clone().into()]
     }
 }
 
@@ -170,20 +180,6 @@ fn command(system: &System, panic: Panic) -> anyhow::Result<Command> {
         command.env(format!("{variable}_{underscored}"), value);
     }
     Ok(command)
-}
-
-/// Compiles the host for arm64, and returns the program.
-fn build(system: &System, target: &Path) -> anyhow::Result<PathBuf> {
-    let mut command = command(system, Panic::Abort)?;
-    let arguments =
-        ["build", "--package", "yoro-android-host", "--package", "yoro-openxr-stub", "--target", TRIPLE];
-    command.args(arguments).env("CARGO_TARGET_DIR", target).env("CARGO_PROFILE_DEV_PANIC", "abort");
-    eprintln!("$ cargo {}", arguments.join(" "));
-    let status = command.status().context("cargo cannot be started")?;
-    if !status.success() {
-        bail!("the simulated Android host does not compile for arm64: see above");
-    }
-    Ok(target.join(TRIPLE).join("debug/yoro-android-host"))
 }
 
 #[cfg(test)]

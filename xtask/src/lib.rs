@@ -116,7 +116,7 @@ enum Task {
         #[arg(long, value_name = "NAME", value_delimiter = ',')]
         only: Vec<release::Item>,
     },
-    /// Build the site into target/site: the page, the guides, rustdoc, downloads. All its links are checked
+    /// Build the site into target/site: the page, the guides, rustdoc, downloads
     Site {
         /// Offer the files of a release in this folder
         #[arg(long, value_name = "DIR")]
@@ -172,7 +172,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
     match task {
         Task::Setup => {
             apt::install_missing(|| vec![setup::cpp()], true)?;
-            if setup::ensure()?.complete() & setup::vulkan() {
+            if setup::ensure()? & setup::vulkan() {
                 println!("everything is there");
             }
         }
@@ -197,7 +197,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             return Ok(complete);
         }
         Task::CheckApk { file, store } => {
-            return android::check::check(&file, store, false);
+            return android::check::check(&file, store, &[]);
         }
         Task::Package { targets } => {
             package::package(&targets)?;
@@ -216,12 +216,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         }
         Task::Godot { task: godot::Task::Test } => godot::test()?,
         Task::Web { wgpu, serve, as_built, port, out } => {
-            let folder = match (wgpu, as_built) {
-                (false, false) => web::build()?,
-                (false, true) => web::built()?,
-                (true, false) => web::build_example()?,
-                (true, true) => web::built_example()?,
-            };
+            let folder = web::folder(wgpu, as_built)?;
             if let Some(out) = out {
                 web::publish(&folder, &out)?;
             }

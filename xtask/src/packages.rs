@@ -1,7 +1,6 @@
 //! Debian packages, unpacked into a folder. apt gets a private state for this, and nothing is installed.
 
 use std::fs;
-use std::io::Write as _;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -9,6 +8,8 @@ use std::process::{Command, Stdio};
 use anyhow::{Context as _, bail};
 
 use crate::apt;
+use crate::console::run;
+use crate::folders::{files, make, write};
 
 /// apt with a private state in which nothing is installed, and with this machine's or another distribution's sources.
 pub struct PrivateApt {
@@ -30,16 +31,14 @@ impl PrivateApt {
                 .with_context(|| format!("{tool} is not here: only Debian's packages have all of it"))?;
         }
         for path in ["state/lists/partial", "cache/archives/partial"] {
-            let path = folder.join(path);
-            fs::create_dir_all(&path).with_context(|| format!("{} cannot be made", path.display()))?;
+            make(&folder.join(path))?;
         }
-        let write = |name: &str, text: &str| {
-            let path = folder.join(name);
-            fs::write(&path, text).with_context(|| format!("{} cannot be written", path.display()))?;
-            Ok::<PathBuf, anyhow::Error>(path)
-        };
-        write("state/status", "")?;
-        let sources = sources.map(|lines| write("sources.list", lines)).transpose()?;
+        write(&folder.join("state/status"), "")?;
+        let sources = sources.map(|lines| {
+            let list = folder.join("sources.list");
+            write(&list, lines).map(|()| list)
+        });
+        let sources = sources.transpose()?;
         let architectures = architectures.iter().map(|&name| name.to_owned()).collect();
         Ok(Self { folder, architectures, sources })
     }
@@ -72,15 +71,7 @@ impl PrivateApt {
 
     fn get(&self, arguments: &[&str]) -> anyhow::Result<()> {
         eprintln!("$ apt-get {} (into {})", arguments.join(" "), self.folder.display());
-        let output = self
-            .command("apt-get", &["--quiet=2"])
-            .args(arguments)
-            .output()
-            .context("apt-get cannot be started")?;
-        if !output.status.success() {
-            bail!("apt-get {} failed: {}", arguments[0], String::from_utf8_lossy(&output.stderr).trim());
-        }
-        Ok(())
+        run(self.command("apt-get", &["--quiet=2"]).args(arguments)).map(drop)
     }
 
     /// Fetches the lists of packages.
@@ -97,9 +88,7 @@ impl PrivateApt {
     /// # Errors
     /// Fails if apt-cache cannot be started.
     pub fn names(&self, beginning: &str) -> anyhow::Result<String> {
-        let names = self.command("apt-cache", &["pkgnames", beginning]).output();
-        let names = names.context("apt-cache cannot be started")?.stdout;
-        Ok(String::from_utf8_lossy(&names).into_owned())
+        run(&mut self.command("apt-cache", &["pkgnames", beginning]))
     }
 
     /// Downloads packages and their dependencies, and returns the files. A package may be followed by `=VERSION`.
@@ -110,11 +99,8 @@ impl PrivateApt {
         let mut arguments = vec!["install", "--yes", "--download-only", "--no-install-recommends"];
         arguments.extend(packages.iter().map(String::as_str));
         self.get(&arguments)?;
-        let archives = self.folder.join("cache/archives");
-        let entries =
-            fs::read_dir(&archives).with_context(|| format!("{} cannot be read", archives.display()))?;
-        let files = entries.flatten().map(|entry| entry.path());
-        Ok(files.filter(|path| path.extension().is_some_and(|extension| extension == "deb")).collect())
+        let all = files(&self.folder.join("cache/archives"))?;
+        Ok(all.into_iter().filter(|(name, _)| name.ends_with(".deb")).map(|(_, path)| path).collect())
     }
 
     /// Removes the downloads, which are not needed after unpacking.
@@ -160,12 +146,8 @@ pub fn unpack(package: &Path, root: &Path, only: &[&str], without: &[&str]) -> a
 /// # Errors
 /// Fails if this machine has no Debian source.
 pub fn debian_sources(releases: &[&str]) -> anyhow::Result<String> {
-    let targets = Command::new("apt-get")
-        .args(["indextargets", "--format", "$(REPO_URI) $(COMPONENT)", "Created-By: Packages"])
-        .output()
-        .context("apt-get cannot be started")?
-        .stdout;
-    let targets = String::from_utf8_lossy(&targets).into_owned();
+    let arguments = ["indextargets", "--format", "$(REPO_URI) $(COMPONENT)", "Created-By: Packages"];
+    let targets = run(Command::new("apt-get").args(arguments))?;
     let place = debian(&targets).context("this machine has no source of Debian's packages")?;
     let line = |release: &&str| {
         format!("deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] {place} {release} main\n")
@@ -190,11 +172,8 @@ pub fn quoted(path: &Path) -> String {
 /// # Errors
 /// Fails if the file cannot be written.
 pub fn write_launcher(launcher: &Path, text: &str) -> anyhow::Result<()> {
-    fs::File::create(launcher)
-        .and_then(|mut file| {
-            file.write_all(format!("#!/bin/sh\n{text}").as_bytes())?;
-            file.set_permissions(fs::Permissions::from_mode(0o755))
-        })
+    write(launcher, format!("#!/bin/sh\n{text}"))?;
+    fs::set_permissions(launcher, fs::Permissions::from_mode(0o755))
         .with_context(|| format!("{} cannot be written", launcher.display()))
 }
 

@@ -25,7 +25,7 @@ const PRECISIONS: &str =
 /// Fails without glslang.
 pub fn module() -> anyhow::Result<String> {
     let mut module = format!(
-        "// yoro {}, synthesis passes, written from its GLSL by `cargo xtask maintain shaders`. Do not edit.\n\
+        "// yoro {}, synthesis passes, written from its GLSL by `cargo xtask maintain renew`. Do not edit.\n\
          // SPDX-License-Identifier: MIT OR Apache-2.0\n\
          export const precisions = '{PRECISIONS}';\n",
         env!("CARGO_PKG_VERSION")
@@ -132,6 +132,6 @@ mod tests {
             std::fs::write(&file, &made).unwrap();
         }
         let kept = std::fs::read_to_string(&file).unwrap_or_default();
-        assert!(kept == made, "{} is not of these shaders: cargo xtask maintain shaders", file.display());
+        assert!(kept == made, "{} is not of these shaders: cargo xtask maintain renew", file.display());
     }
 }

@@ -8,15 +8,16 @@ use std::time::Instant;
 use anyhow::{Context as _, bail};
 
 use crate::folders::{copy, root, target_folder};
+use crate::ndk::sdk;
 use crate::ndk::stand_in::StandIn;
 use crate::ndk::target::{ARCHITECTURES, LOADER, PAGE, TARGET_API};
-use crate::{cargo, notices};
 use crate::rust::{Panic, Rust, anonymous_paths, build_std};
+use crate::{cargo, notices};
 
 use super::check::{self, Store};
 use super::keystore::Keystore;
 use super::pack::{Variant, pack, sign};
-use super::toolchain::{self, Surroundings, Toolchain};
+use super::toolchain::{self, Toolchain};
 
 /// `apk_name` of android/Cargo.toml.
 const NAME: &str = "yoro";
@@ -36,23 +37,13 @@ pub struct Options {
     pub bundle: bool,
     /// Also pack an APK for Meta's store.
     pub quest: bool,
-    /// Compile faster, for tests: the same code, but hardly optimized, and in another folder.
+    /// Compile faster, for tests: the same code, but not optimized as a whole, and in another folder.
     pub quick: bool,
 }
 
 /// Arguments of apksigner for a bundle, signed as a JAR. Given the API level, apksigner needs no manifest.
-const JAR: [&str; 10] = [
-    "--min-sdk-version",
-    "29",
-    "--v1-signing-enabled",
-    "true",
-    "--v2-signing-enabled",
-    "false",
-    "--v3-signing-enabled",
-    "false",
-    "--v4-signing-enabled",
-    "false",
-];
+const JAR: &str = "--min-sdk-version 29 --v1-signing-enabled true --v2-signing-enabled false --v3-signing-enabled false \
+                   --v4-signing-enabled false";
 
 /// Builds, signs and checks the APK, and returns its path.
 ///
@@ -60,12 +51,12 @@ const JAR: [&str; 10] = [
 /// Fails if something is missing, a step fails, or a check of the result fails.
 pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
-    let surroundings = Surroundings::here();
     let loaders = options.openxr_loaders.iter().map(|file| Ok((check::loader_abi(file)?, file.as_path())));
     let _loaders = Loaders::place(loaders, &root().join("android/runtime-libs"))?;
-    let (toolchain, against) = Toolchain::choose(&surroundings);
+    let (toolchain, against) = Toolchain::choose();
     eprintln!("building with {toolchain}");
-    if surroundings.names_google() && !against.is_empty() {
+    let names_google = ["ANDROID_HOME", "ANDROID_NDK_ROOT"].iter().any(|name| sdk::folder(name).is_some());
+    if names_google && !against.is_empty() {
         eprintln!("warning: Google's SDK and NDK are not used: {}", against.join("; "));
     }
     toolchain::ensure(&toolchain, options.yes)?;
@@ -87,10 +78,10 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
         // These flags are for this machine's processor.
         .env_remove("RUSTFLAGS");
     if options.quick {
-        command.envs([("CARGO_PROFILE_ANDROID_LTO", "off"), ("CARGO_PROFILE_ANDROID_OPT_LEVEL", "1")]);
+        command.envs([("CARGO_PROFILE_ANDROID_LTO", "off"), ("CARGO_PROFILE_ANDROID_OPT_LEVEL", "2")]);
     }
     let mut flags = link_flags();
-    let (sdk, rust) = match &toolchain {
+    let (sdk_folder, rust) = match &toolchain {
         Toolchain::Google { sdk, .. } => (sdk.clone(), Rust::own()),
         Toolchain::StandIn => {
             let stand_in = StandIn::make(&target.join("android/stand-in"))?;
@@ -107,7 +98,7 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
 
     let folder = if options.release { "android" } else { "debug" };
     let folder = build.join(folder).join("apk");
-    let android_jar = sdk.join(format!("platforms/android-{TARGET_API}/android.jar"));
+    let android_jar = sdk_folder.join(format!("platforms/android-{TARGET_API}/android.jar"));
     let notices = notices::text("yoro-android", ARCHITECTURES[0].triple, &[])?;
     let kind = match (options.quick, options.release) {
         (true, _) => "-quick",
@@ -122,18 +113,26 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
         println!("{}", apk.display());
         anyhow::Ok(apk)
     };
+    let mut apart_from = Vec::new();
+    if keystore.debug {
+        apart_from.push("any-key");
+    }
+    if options.quick {
+        apart_from.push("any-size");
+    }
+    let apart_from = &apart_from[..];
     let mut passed = true;
     if options.quest {
-        passed &= check::check(&packed(Variant::Quest, "-quest")?, Some(Store::Quest), keystore.debug)?;
+        passed &= check::check(&packed(Variant::Quest, "-quest")?, Some(Store::Quest), apart_from)?;
     }
     let apk = packed(Variant::All, "")?;
-    passed &= check::check(&apk, None, keystore.debug)?;
+    passed &= check::check(&apk, None, apart_from)?;
     if options.bundle {
         let bundle = apk.with_extension("aab");
         check::bundle(&apk, &bundle)?;
-        sign(&bundle, &keystore, &JAR)?;
+        sign(&bundle, &keystore, &JAR.split_whitespace().collect::<Vec<_>>())?;
         println!("{}", bundle.display());
-        passed &= check::check(&bundle, Some(Store::Play), keystore.debug)?;
+        passed &= check::check(&bundle, Some(Store::Play), apart_from)?;
     }
     if options.release && keystore.debug {
         println!(
@@ -153,7 +152,7 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
 /// # Errors
 /// Fails if something cannot be obtained on this machine.
 pub fn ready_for_tests() -> anyhow::Result<PathBuf> {
-    let (toolchain, _) = Toolchain::choose(&Surroundings::here());
+    let (toolchain, _) = Toolchain::choose();
     toolchain::ensure(&toolchain, true)?;
     Ok(PathBuf::new())
 }

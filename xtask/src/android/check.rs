@@ -1,6 +1,6 @@
 //! Runs `yoro-android-check`, which works with archives and libraries.
 
-use std::path::{Path, PathBuf, absolute};
+use std::path::{Path, absolute};
 
 use anyhow::Context as _;
 use clap::ValueEnum;
@@ -27,11 +27,12 @@ fn absolute_path(path: &Path) -> anyhow::Result<String> {
 }
 
 /// Checks whether Android will install and start an APK, or whether a store takes it, and prints the result. Returns true
-/// if so. With `any_key`, it may be signed for debugging. Installs Android's own tools if they are missing.
+/// if so, `apart_from` the rules `any-key` (it may be signed for debugging) and `any-size`. Installs Android's own tools if
+/// they are missing.
 ///
 /// # Errors
 /// Fails if the file is missing or not an APK, or a tool for the checks is missing.
-pub fn check(apk: &Path, store: Option<Store>, any_key: bool) -> anyhow::Result<bool> {
+pub fn check(apk: &Path, store: Option<Store>, apart_from: &[&str]) -> anyhow::Result<bool> {
     apt::install_missing(toolchain::check_tools, true)?;
     let store = match store {
         None => "-",
@@ -39,8 +40,7 @@ pub fn check(apk: &Path, store: Option<Store>, any_key: bool) -> anyhow::Result<
         Some(Store::Play) => "play",
     };
     let apk = absolute_path(apk)?;
-    let arguments = ["check", &apk, store, "any-key"];
-    let (report, passed) = run(&arguments[..if any_key { 4 } else { 3 }])?;
+    let (report, passed) = run(&[&["check", &apk, store][..], apart_from].concat())?;
     console::print(&report);
     Ok(passed)
 }
@@ -49,7 +49,7 @@ pub fn check(apk: &Path, store: Option<Store>, any_key: bool) -> anyhow::Result<
 ///
 /// # Errors
 /// Fails if the file is not a loader, or is for an architecture that the APK has no libraries for.
-pub fn loader_abi(file: &PathBuf) -> anyhow::Result<String> {
+pub fn loader_abi(file: &Path) -> anyhow::Result<String> {
     Ok(run(&["loader", &absolute_path(file)?])?.0)
 }
 

@@ -10,7 +10,7 @@ use crate::ndk::target::Architecture;
 use crate::rust::{Panic, Rust, build_std};
 
 use super::build::link_flags;
-use super::toolchain::{self, Surroundings, Toolchain};
+use super::toolchain::{self, Toolchain};
 
 /// The API level of the oldest Android that the libraries support (Android 11). It is the first whose C library can
 /// unwind; the stand-in NDK has no unwinder.
@@ -21,8 +21,7 @@ pub const API: u32 = 30;
 /// # Errors
 /// Fails if something is missing. The error names the remedy.
 pub fn cargo(architecture: Architecture) -> anyhow::Result<Command> {
-    let surroundings = Surroundings::here();
-    let (toolchain, _) = Toolchain::choose(&surroundings);
+    let (toolchain, _) = Toolchain::choose();
     toolchain::ensure(&toolchain, true)?;
     let mut flags = link_flags();
     flags.push(format!("-Clink-arg=--target={}{API}", architecture.triple));

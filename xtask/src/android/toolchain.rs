@@ -14,15 +14,6 @@ use crate::rust::{Rust, source};
 use super::build::CARGO_APK;
 use super::keystore;
 
-/// The facts about the user's machine that decide which toolchain is used.
-#[derive(Clone, Debug, Default)]
-pub struct Surroundings {
-    android_home: Option<PathBuf>,
-    ndk_root: Option<PathBuf>,
-    /// The targets that the user's Rust has std for, as [`crate::ndk::target::Architecture::triple`].
-    targets: Vec<&'static str>,
-}
-
 /// The toolchain for the APK.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Toolchain {
@@ -37,46 +28,28 @@ pub enum Toolchain {
     StandIn,
 }
 
-impl Surroundings {
-    /// Reads the facts from this process's environment.
-    pub fn here() -> Self {
-        let rust = Rust::own();
-        let has = |triple: &&str| rust.as_ref().is_some_and(|rust| rust.has_target(triple));
-        Self {
-            android_home: sdk::folder("ANDROID_HOME"),
-            ndk_root: sdk::folder("ANDROID_NDK_ROOT"),
-            targets: ARCHITECTURES.map(|architecture| architecture.triple).into_iter().filter(has).collect(),
-        }
-    }
-
-    /// True if the environment names Google's SDK or NDK.
-    pub fn names_google(&self) -> bool {
-        self.android_home.is_some() || self.ndk_root.is_some()
-    }
-}
-
 impl Toolchain {
-    /// Chooses the user's own toolchain if it is complete. Also returns the reasons against it, one sentence each.
-    pub fn choose(surroundings: &Surroundings) -> (Self, Vec<String>) {
+    /// Returns the user's own toolchain if it is complete. Also returns the reasons against it, one sentence each.
+    pub fn choose() -> (Self, Vec<String>) {
+        let rust = Rust::own();
+        let has_std = |triple: &str| rust.as_ref().is_some_and(|rust| rust.has_target(triple));
+        Self::of(sdk::folder("ANDROID_HOME"), sdk::folder("ANDROID_NDK_ROOT"), has_std)
+    }
+
+    fn of(sdk: Option<PathBuf>, ndk: Option<PathBuf>, has_std: impl Fn(&str) -> bool) -> (Self, Vec<String>) {
         let mut against = Vec::new();
-        let mut folder = |name: &str, value: &Option<PathBuf>| match value {
-            None => against.push(format!("{name} is not set")),
-            Some(path) if !path.is_dir() => {
-                against.push(format!("{name} is {}, which is no folder", path.display()));
-            }
-            Some(_) => {}
-        };
-        folder("ANDROID_HOME", &surroundings.android_home);
-        folder("ANDROID_NDK_ROOT", &surroundings.ndk_root);
-        for target in ARCHITECTURES {
-            if !surroundings.targets.contains(&target.triple) {
-                against.push(format!("Rust has no std for {0} (rustup target add {0})", target.triple));
+        for (name, value) in [("ANDROID_HOME", &sdk), ("ANDROID_NDK_ROOT", &ndk)] {
+            match value {
+                None => against.push(format!("{name} is not set")),
+                Some(path) if path.is_dir() => {}
+                Some(path) => against.push(format!("{name} is {}, which is no folder", path.display())),
             }
         }
-        match (&surroundings.android_home, &surroundings.ndk_root) {
-            (Some(sdk), Some(ndk)) if against.is_empty() => {
-                (Self::Google { sdk: sdk.clone(), ndk: ndk.clone() }, against)
-            }
+        for triple in ARCHITECTURES.map(|target| target.triple).iter().filter(|triple| !has_std(triple)) {
+            against.push(format!("Rust has no std for {triple} (rustup target add {triple})"));
+        }
+        match (sdk, ndk) {
+            (Some(sdk), Some(ndk)) if against.is_empty() => (Self::Google { sdk, ndk }, against),
             _ => (Self::StandIn, against),
         }
     }
@@ -138,7 +111,12 @@ fn stand_in() -> Vec<Need> {
         Need::program("clang", &["clang"]),
         Need::program("ld.lld", &["lld"]),
         Need::program("llvm-ar", &["llvm"]),
-        Need::file("android.jar", Path::new(FRAMEWORK), "apt-get install android-framework-res", &["android-framework-res"]),
+        Need::file(
+            "android.jar",
+            Path::new(FRAMEWORK),
+            "apt-get install android-framework-res",
+            &["android-framework-res"],
+        ),
         source(Rust::with_source().as_ref()),
     ];
     needs.extend(check_tools());
@@ -160,8 +138,7 @@ pub fn ensure(toolchain: &Toolchain, yes: bool) -> anyhow::Result<()> {
 
 /// Describes the toolchain of `cargo xtask apk` and what it lacks. Returns the text, and true if nothing is missing.
 pub fn doctor() -> (String, bool) {
-    let surroundings = Surroundings::here();
-    let (toolchain, against) = Toolchain::choose(&surroundings);
+    let (toolchain, against) = Toolchain::choose();
     let mut lines = vec![format!("cargo xtask apk uses {toolchain}")];
     if !against.is_empty() {
         lines.push(format!("  not Google's SDK and NDK, because {}", against.join("; ")));
@@ -194,21 +171,13 @@ mod tests {
     #[test]
     fn googles_way_needs_all_three() {
         let folder = tempfile::tempdir().unwrap();
-        let at = folder.path();
-        let mut surroundings = Surroundings::default();
-        let (toolchain, against) = Toolchain::choose(&surroundings);
+        let at = || Some(folder.path().to_owned());
+        let (toolchain, against) = Toolchain::of(None, None, |_| false);
         assert_eq!((toolchain, against.len()), (Toolchain::StandIn, 4), "{against:?}");
-
-        surroundings.targets = ARCHITECTURES.map(|architecture| architecture.triple).to_vec();
-        surroundings.android_home = Some(at.to_owned());
-        surroundings.ndk_root = Some(at.join("nowhere"));
-        let (toolchain, against) = Toolchain::choose(&surroundings);
+        let (toolchain, against) = Toolchain::of(at(), Some(folder.path().join("nowhere")), |_| true);
         assert_eq!((toolchain, against.len()), (Toolchain::StandIn, 1), "{against:?}");
         assert!(against[0].starts_with("ANDROID_NDK_ROOT is ") && against[0].contains("nowhere"));
-
-        surroundings.ndk_root = Some(at.to_owned());
-        let (toolchain, against) = Toolchain::choose(&surroundings);
-        assert_eq!(toolchain, Toolchain::Google { sdk: at.to_owned(), ndk: at.to_owned() });
-        assert!(against.is_empty());
+        let (toolchain, against) = Toolchain::of(at(), at(), |_| true);
+        assert!(matches!(toolchain, Toolchain::Google { .. }) && against.is_empty());
     }
 }

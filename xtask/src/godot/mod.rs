@@ -4,13 +4,11 @@ mod pictures;
 mod session;
 mod test;
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::Context as _;
 use clap::Subcommand;
 
-use crate::folders::{copy, remove, root, target_folder};
+use crate::folders::{self, copy, remove, root, target_folder};
 use crate::kit;
 
 pub use test::test;
@@ -47,33 +45,14 @@ pub fn project() -> anyhow::Result<PathBuf> {
 /// # Errors
 /// Fails if the kit does not compile, or a folder cannot be read.
 pub fn files() -> anyhow::Result<Vec<(String, PathBuf)>> {
-    let mut files = Vec::new();
-    list(&root().join("app/engines/godot"), "", &mut files)?;
-    let mut kit = Vec::new();
-    list(&kit::kit()?.join("godot"), "", &mut kit)?;
-    for (name, file) in kit {
+    let mut files = folders::files(&root().join("app/engines/godot"))?;
+    // Of the hidden files, only those that make Godot ignore a folder.
+    files.retain(|(name, _)| name.split('/').all(|part| !part.starts_with('.') || part == ".gdignore"));
+    for (name, file) in folders::files(&kit::kit()?.join("godot"))? {
         // The add-on uses three passes. The others are only tested to compile.
         let used = ["tiles.glsl", "spans.glsl", "march.glsl"].contains(&name.as_str());
         let folder = if used { format!("{ADDON}/shaders") } else { "test/kit".to_owned() };
         files.push((format!("{folder}/{name}"), file));
     }
     Ok(files)
-}
-
-/// Adds all files of a folder. Of the hidden files, adds only those that make Godot ignore a folder.
-fn list(folder: &Path, before: &str, files: &mut Vec<(String, PathBuf)>) -> anyhow::Result<()> {
-    let entries = fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))?;
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    paths.sort();
-    for path in paths {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if name.starts_with('.') && name != ".gdignore" {
-            continue;
-        }
-        match path.is_dir() {
-            true => list(&path, &format!("{before}{name}/"), files)?,
-            false => files.push((format!("{before}{name}"), path)),
-        }
-    }
-    Ok(())
 }

@@ -1,10 +1,10 @@
 //! `cargo xtask maintain`: the commands that only maintainers run, and the programs that tests use.
 
-mod compile;
 pub mod estimate;
 pub(crate) mod godot;
 pub(crate) mod hello_xr;
 pub mod monado;
+mod renew;
 
 use clap::Subcommand;
 
@@ -29,8 +29,9 @@ pub(crate) enum Task {
         #[arg(last = true, conflicts_with = "shaders")]
         frames: Vec<String>,
     },
-    /// Renew all that is made of the synthesis shaders: SPIR-V for Vulkan, WGSL for wgpu, the texts of three.js
-    Shaders,
+    /// Renew everything that is generated: shaders for Vulkan, wgpu and three.js, the C library's header, the table of
+    /// settings, and the costs of shaders
+    Renew,
     /// Set up Monado, an OpenXR runtime with a simulated headset, below target/, and print how to use it
     Monado,
     /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
@@ -48,7 +49,7 @@ pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
             estimate::report(&estimate::Options { filter, gpus, bless }, &compilers, estimate::programs()?)?
         }
         Task::Estimate { frames, .. } => (estimate::frames(&frames)?, true),
-        Task::Shaders => (compile::shaders()?, true),
+        Task::Renew => renew::renew()?,
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
         Task::Godot => (godot::usage()?, true),

@@ -10,12 +10,13 @@ use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 
 use super::symbols::{LISTS, listed};
 use super::target::{ARCHITECTURES, Architecture, MIN_API, TARGET_API};
 use crate::apt::find_program;
-use crate::folders::{make_once, make_parent, write};
+use crate::console::run;
+use crate::folders::{make, make_once, make_parent, write};
 
 const CRTBEGIN: &str = include_str!("../../ndk/crtbegin_so.c");
 const UNWIND: &str = include_str!("../../ndk/unwind.c");
@@ -101,21 +102,20 @@ fn recipe() -> String {
 pub fn make_libraries(folder: &Path, architecture: Architecture, api: u32) -> anyhow::Result<()> {
     let target = format!("--target={}{api}", architecture.triple);
     let level = folder.join(architecture.triple).join(api.to_string());
-    fs::create_dir_all(&level).with_context(|| format!("{} cannot be made", level.display()))?;
+    make(&level)?;
     let source = level.join("source");
 
     for (library, list) in LISTS {
         write(&source, stub(list, api))?;
         let soname = format!("-Wl,-soname,{library}.so");
-        clang(&target, &["-fuse-ld=lld", "-nostdlib", "-shared", &soname], "assembler", &source)
-            .arg(level.join(format!("{library}.so")))
-            .finish()?;
+        let options = ["-fuse-ld=lld", "-nostdlib", "-shared", &soname];
+        clang(&target, &options, "assembler", &source, &level.join(format!("{library}.so")))?;
     }
     let compile = ["-O2", "-fPIC", "-ffreestanding", "-c"];
     write(&source, CRTBEGIN)?;
-    clang(&target, &compile, "c", &source).arg(level.join("crtbegin_so.o")).finish()?;
+    clang(&target, &compile, "c", &source, &level.join("crtbegin_so.o"))?;
     write(&source, "")?;
-    clang(&target, &compile, "c", &source).arg(level.join("crtend_so.o")).finish()?;
+    clang(&target, &compile, "c", &source, &level.join("crtend_so.o"))?;
     fs::remove_file(&source).with_context(|| format!("{} cannot be removed", source.display()))
 }
 
@@ -128,9 +128,8 @@ pub fn make_unwinder(folder: &Path, architecture: Architecture, content: &str) -
     let common = folder.join(architecture.triple);
     let (source, unwind) = (common.join("source"), common.join("unwind.o"));
     write(&source, content)?;
-    clang(&target, &["-O2", "-fPIC", "-ffreestanding", "-c"], "c", &source).arg(&unwind).finish()?;
-    let mut archive = Command::new("llvm-ar");
-    archive.arg("rcs").arg(common.join("libunwind.a")).arg(&unwind).finish()?;
+    clang(&target, &["-O2", "-fPIC", "-ffreestanding", "-c"], "c", &source, &unwind)?;
+    run(Command::new("llvm-ar").arg("rcs").arg(common.join("libunwind.a")).arg(&unwind))?;
     for temporary in [unwind, source] {
         fs::remove_file(&temporary).with_context(|| format!("{} cannot be removed", temporary.display()))?;
     }
@@ -150,25 +149,10 @@ fn stub(list: &str, api: u32) -> String {
     text
 }
 
-fn clang(target: &str, options: &[&str], language: &str, source: &Path) -> Command {
+fn clang(target: &str, options: &[&str], language: &str, source: &Path, made: &Path) -> anyhow::Result<()> {
     let mut command = Command::new("clang");
-    command.arg(target).args(options).args(["-x", language]).arg(source).arg("-o");
-    command
-}
-
-trait Finish {
-    fn finish(&mut self) -> anyhow::Result<()>;
-}
-
-impl Finish for Command {
-    fn finish(&mut self) -> anyhow::Result<()> {
-        let program = self.get_program().to_string_lossy().into_owned();
-        let output = self.output().with_context(|| format!("{program} cannot be started"))?;
-        if !output.status.success() {
-            bail!("{self:?} failed: {}", String::from_utf8_lossy(&output.stderr).trim());
-        }
-        Ok(())
-    }
+    command.arg(target).args(options).args(["-x", language]).arg(source).arg("-o").arg(made);
+    run(&mut command).map(drop)
 }
 
 fn program(name: &str) -> anyhow::Result<PathBuf> {

@@ -8,11 +8,11 @@ use std::process::Command;
 use crate::android::library_cargo;
 use crate::folders::{copy, make, read, read_text, root, target_folder, write};
 use crate::ndk::target::{ARCHITECTURES, Architecture};
-use crate::notices;
 
 use super::android::{android_manifest, licences, pack};
 use super::linux::Machine;
 use super::portable::needed_glibc;
+use super::texts::readme;
 use super::{VERSION, compile};
 
 /// The file name of the library.
@@ -87,7 +87,8 @@ pub fn archive(machine: Machine, folder: &Path) -> anyhow::Result<PathBuf> {
         copy(&library, &copied)?;
         machine.strip(&[], &copied)?;
         write(&content.join(PLACE).join(MANIFEST), installed(&read_text(&manifest())?))?;
-        Ok(readme(machine.architecture(), needed_glibc(&copied)?))
+        let template = include_str!("templates/README.layer.txt");
+        Ok(readme(template, machine.architecture(), needed_glibc(&copied)?))
     })
 }
 
@@ -98,26 +99,6 @@ fn installed(manifest: &str) -> String {
     let lines = manifest.lines().filter(|line| !line.contains("disable_environment"));
     let text = lines.collect::<Vec<_>>().join("\n").replace(LIBRARY, &format!("{up}lib/{LIBRARY}"));
     text.replace("\n    ],\n  }", "\n    ]\n  }") + "\n"
-}
-
-fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
-    format!(
-        "# yoro's OpenXR API layer {VERSION} for Linux on {architecture}\n\
-         \n\
-         An application that renders one view with depth is seen in stereo. Needs glibc {major}.{minor} or newer, and\n\
-         OpenXR's loader. From this folder:\n\
-         \n\
-         ```sh\n\
-         export XR_API_LAYER_PATH=$PWD/{PLACE}\n\
-         XR_ENABLE_API_LAYERS=XR_APILAYER_YORO_one_view hello_xr -g Vulkan2 -vc Mono\n\
-         ```\n\
-         \n\
-         Settings: `$XDG_CONFIG_HOME/yoro/layer.toml`, or variables such as `YORO_LAYER_DOMINANT=left`. The program yoro has\n\
-         the same library, and installs it by `yoro layer install`.\n\
-         \n\
-         MIT or Apache 2.0, at your option; {} has the notices of others' code.\n",
-        notices::FILE
-    )
 }
 
 #[cfg(test)]

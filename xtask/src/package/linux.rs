@@ -17,6 +17,9 @@ use super::portable::{self, OLDEST_GLIBC};
 use super::texts::{cmake, cmake_version, manual, pkg_config, readme, soname, with_links};
 use super::{VERSION, build};
 
+/// The first page of the C library's archive.
+const README: &str = include_str!("templates/README.library.txt");
+
 /// A kind of machine that archives are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Machine {
@@ -128,7 +131,7 @@ pub fn library(machine: Machine, folder: &Path) -> anyhow::Result<PathBuf> {
         copy(&root().join("docs/pictures").join(picture), &documents.join(picture))?;
         let guide = read_text(&root().join("docs/engines.md"))?;
         write(&documents.join("guide.md"), with_links(&manual(&guide), packaged))?;
-        Ok(readme(machine.architecture(), OLDEST_GLIBC))
+        Ok(readme(README, machine.architecture(), OLDEST_GLIBC))
     })
 }
 
@@ -164,7 +167,7 @@ mod tests {
 
     #[test]
     fn the_first_page_has_a_line_for_each_sample() {
-        let page = readme("x86_64", (2, 28));
+        let page = readme(README, "x86_64", (2, 28));
         let files = fs::read_dir(root().join("app/engines/c/examples")).unwrap();
         let names = files.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned());
         let samples: Vec<String> = names.filter(|name| name.ends_with(".c")).collect();

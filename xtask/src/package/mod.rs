@@ -6,7 +6,7 @@ mod godot;
 pub mod layer;
 pub mod linux;
 pub mod portable;
-mod texts;
+pub mod texts;
 mod three;
 
 use std::fs;

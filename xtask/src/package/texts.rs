@@ -1,74 +1,44 @@
-//! The files of packages that build systems read.
+//! The texts in packages: files that build systems read, first pages, and what of a document concerns C.
 
 use super::VERSION;
 
 /// Returns the library's soname. A program runs with any version of the library that has the same soname. While the
 /// first number is 0, these are the versions that differ only in the last number.
 pub fn soname() -> String {
-    let mut parts = VERSION.split('.');
-    match (parts.next(), parts.next()) {
-        (Some("0"), Some(minor)) => format!("libyoro.so.0.{minor}"),
-        (major, _) => format!("libyoro.so.{}", major.unwrap_or_default()),
-    }
+    format!("libyoro.so.{}", series())
+}
+
+fn series() -> String {
+    let count = if VERSION.starts_with("0.") { 2 } else { 1 };
+    VERSION.split('.').take(count).collect::<Vec<_>>().join(".")
+}
+
+/// Returns a template with this version and with a value for each name, which is written `@NAME@` there.
+fn filled(template: &str, values: &[(&str, &str)]) -> String {
+    let with_version = template.replace("@VERSION@", VERSION);
+    values.iter().fold(with_version, |text, (name, value)| text.replace(&format!("@{name}@"), value))
+}
+
+/// Returns the first page of an archive for Linux from its template.
+pub fn readme(template: &str, architecture: &str, (major, minor): (u32, u32)) -> String {
+    filled(template, &[("ARCHITECTURE", architecture), ("GLIBC", &format!("{major}.{minor}"))])
 }
 
 /// Returns the file for pkg-config, which works wherever the package is unpacked.
 pub fn pkg_config(needs: &[String]) -> String {
-    format!(
-        "prefix=${{pcfiledir}}/../..\n\
-         includedir=${{prefix}}/include\n\
-         libdir=${{prefix}}/lib\n\
-         \n\
-         Name: yoro\n\
-         Description: Render one eye, synthesize the other\n\
-         Version: {VERSION}\n\
-         Cflags: -I${{includedir}}\n\
-         Libs: -L${{libdir}} -lyoro\n\
-         Libs.private: {}\n",
-        needs.join(" ")
-    )
+    filled(include_str!("templates/yoro.pc"), &[("NEEDS", &needs.join(" "))])
 }
 
 /// Returns the file for CMake, with the targets yoro::yoro and yoro::static.
 pub fn cmake(needs: &[String]) -> String {
-    format!(
-        "get_filename_component(_yoro_prefix \"${{CMAKE_CURRENT_LIST_DIR}}/../../..\" ABSOLUTE)\n\
-         if(NOT TARGET yoro::yoro)\n\
-         \x20 add_library(yoro::yoro SHARED IMPORTED)\n\
-         \x20 set_target_properties(yoro::yoro PROPERTIES\n\
-         \x20   IMPORTED_LOCATION \"${{_yoro_prefix}}/lib/libyoro.so.{VERSION}\"\n\
-         \x20   IMPORTED_SONAME {}\n\
-         \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_yoro_prefix}}/include\")\n\
-         \x20 add_library(yoro::static STATIC IMPORTED)\n\
-         \x20 set_target_properties(yoro::static PROPERTIES\n\
-         \x20   IMPORTED_LOCATION \"${{_yoro_prefix}}/lib/libyoro.a\"\n\
-         \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_yoro_prefix}}/include\"\n\
-         \x20   INTERFACE_LINK_LIBRARIES \"{}\")\n\
-         endif()\n\
-         unset(_yoro_prefix)\n",
-        soname(),
-        needs.join(";")
-    )
+    let (soname, needs) = (soname(), needs.join(";"));
+    filled(include_str!("templates/yoro-config.cmake"), &[("SONAME", &soname), ("NEEDS", &needs)])
 }
 
 /// Returns the CMake file that checks whether the package satisfies `find_package(yoro VERSION)`.
 pub fn cmake_version() -> String {
-    let soname = soname();
-    let series = soname.trim_start_matches("libyoro.so.");
-    format!(
-        "set(PACKAGE_VERSION {VERSION})\n\
-         if(PACKAGE_FIND_VERSION VERSION_GREATER PACKAGE_VERSION)\n\
-         \x20 set(PACKAGE_VERSION_COMPATIBLE FALSE)\n\
-         elseif(NOT \"${{PACKAGE_FIND_VERSION}}.\" MATCHES \"^{}\\\\.\" AND PACKAGE_FIND_VERSION)\n\
-         \x20 set(PACKAGE_VERSION_COMPATIBLE FALSE)\n\
-         else()\n\
-         \x20 set(PACKAGE_VERSION_COMPATIBLE TRUE)\n\
-         \x20 if(PACKAGE_FIND_VERSION VERSION_EQUAL PACKAGE_VERSION)\n\
-         \x20   set(PACKAGE_VERSION_EXACT TRUE)\n\
-         \x20 endif()\n\
-         endif()\n",
-        series.replace('.', "\\\\.")
-    )
+    let series = series().replace('.', "\\\\.");
+    filled(include_str!("templates/yoro-config-version.cmake"), &[("SERIES", &series)])
 }
 
 /// Returns the parts of docs/engines.md that concern C: the chapter on C, then those that do not depend on a language.
@@ -93,39 +63,6 @@ pub fn manual(text: &str) -> String {
         manual.push('\n');
     }
     manual
-}
-
-/// Returns the README of a package: its content, and how to compile the samples.
-pub fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
-    format!(
-        "# yoro {VERSION} for Linux on {architecture}\n\
-         \n\
-         Render one eye, synthesize the other. Needs glibc {major}.{minor} or newer, and at run time the drivers' libraries.\n\
-         \n\
-         | | |\n\
-         |---|---|\n\
-         | [include/yoro.h](include/yoro.h) | step by step, then every function: arguments, threads, errors |\n\
-         | [share/doc/yoro/guide.md](share/doc/yoro/guide.md) | colour and depth, poses, when it looks wrong |\n\
-         | [share/yoro/examples](share/yoro/examples) | samples, with a `CMakeLists.txt` |\n\
-         | `lib` | `libyoro.so`, `libyoro.a`, files for pkg-config and CMake |\n\
-         \n\
-         The samples, from this folder:\n\
-         \n\
-         ```sh\n\
-         export PKG_CONFIG_PATH=$PWD/lib/pkgconfig\n\
-         FLAGS=\"$(pkg-config --cflags --libs yoro) -Wl,-rpath,$PWD/lib\"\n\
-         cc share/yoro/examples/gles.c $FLAGS -lEGL -lGLESv2 -lm -o gles && ./gles\n\
-         cc share/yoro/examples/any_view.c $FLAGS -lEGL -lGLESv2 -lm -o any_view && ./any_view\n\
-         cc share/yoro/examples/vulkan.c $FLAGS -lvulkan -lm -o vulkan && ./vulkan\n\
-         cmake -S share/yoro/examples -B build -DCMAKE_PREFIX_PATH=$PWD && cmake --build build    # or all by CMake\n\
-         ```\n\
-         \n\
-         They write `gles.png` and `vulkan.png`, both eyes side by side, and print how close the synthesized eye is to a\n\
-         rendered one; `any_view` does so with a view from another pose. A program of your own links `yoro` as they do;\n\
-         `lib/libyoro.a` in place of it needs no `-rpath`.\n\
-         \n\
-         MIT or Apache 2.0, at your option: `share/doc/yoro`, with the notices of others' code in the library.\n"
-    )
 }
 
 /// Replaces the targets of Markdown links. A link without a new target becomes its label.
@@ -171,7 +108,6 @@ mod tests {
     fn texts_name_this_version() {
         let needs = ["-lm".to_owned(), "-lc".to_owned()];
         let series: Vec<&str> = VERSION.split('.').take(2).collect();
-        assert_eq!(soname(), format!("libyoro.so.{}", series.join(".")));
         assert!(pkg_config(&needs).contains(&format!("\nVersion: {VERSION}\n")));
         assert!(pkg_config(&needs).ends_with("Libs.private: -lm -lc\n"));
         assert!(cmake(&needs).contains("INTERFACE_LINK_LIBRARIES \"-lm;-lc\""));

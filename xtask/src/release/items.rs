@@ -13,7 +13,7 @@ use crate::{cargo, kit, lint};
 
 use super::{bills, program};
 
-/// A part of a release.
+/// A part of a release, in the order in which they are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Item {
     /// The program for Linux on this machine's processor and on arm64
@@ -38,77 +38,13 @@ pub enum Item {
     Site,
 }
 
-/// True if the same commit gives the same bytes again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Same {
-    /// On any machine.
-    Anywhere,
-    /// With the same compilers.
-    Compilers,
-    /// With the same compilers and the same key.
-    Key,
-}
+/// What RELEASE.md says about a file, as cells of a table: for whom, tested by, not tested on, same bytes again.
+pub struct Description(pub &'static str);
 
-/// What RELEASE.md says about files whose names contain a part.
-pub struct Description {
-    /// Parts of the names.
-    pub parts: [&'static str; 2],
-    pub title: &'static str,
-    pub tested: &'static str,
-    pub untested: &'static str,
-    pub same: Same,
-    /// Some of those whose notices are in the file, if it contains others' code.
-    pub notices: &'static [&'static str],
-}
-
-/// Of what the layer and the C library contain.
-const LIBRARIES: &[&str] = &["ash", "glam", "glow"];
-const APPLICATION: &[&str] = &["glow", "android-properties", "The font B612 Mono"];
-
-const NO_DEVICE: &str = "a device";
-
-/// The descriptions, the first that fits counts: parts of names, title, tested, untested, same, notices.
-pub const DESCRIPTIONS: [Description; 12] = [
-    describe(["yoro-openxr-layer", "linux"], "OpenXR applications that render one view", "x86_64, of another build: hello_xr on Monado", "arm64, headsets, Steam Frame", Same::Compilers, LIBRARIES),
-    describe(["yoro-openxr-layer", ".aar"], "the same for Android applications", "another build of it, in the simulated Android host", NO_DEVICE, Same::Compilers, LIBRARIES),
-    describe(["libyoro", "linux"], "C, C++ and others: pkg-config, CMake", "x86_64: its README's commands, pictures against Rust's; arm64: it is linked", "arm64 devices", Same::Compilers, LIBRARIES),
-    describe(["yoro-", "linux"], "the program: render, measure, stream, OpenXR", "it renders a scene, arm64 in qemu; x86_64: all tests, of another build", "headsets, arm64 devices, Steam Frame", Same::Compilers, &["openh264-sys2", "clap", "rustls"]),
-    describe(["yoro-", "-quest.apk"], "Meta's store", "check-apk --store quest; its library in the simulated Android host", "a Quest, the store", Same::Key, APPLICATION),
-    describe(["yoro-", ".apk"], "phones, all headsets, sideloading", "check-apk, the simulated Android host", NO_DEVICE, Same::Key, APPLICATION),
-    describe(["yoro-", ".aab"], "Google Play, phones and Android XR", "check-apk --store play", "a device, bundletool, the store", Same::Key, APPLICATION),
-    describe(["yoro-", ".aar"], "the C library for Android, by prefab", "it is linked with public names alone", NO_DEVICE, Same::Compilers, LIBRARIES),
-    describe(["yoro-kit", ".zip"], "engines that want no library: shaders and a header", "pictures against the library's", "", Same::Anywhere, &[]),
-    describe(["yoro-godot", ".zip"], "Godot", "Godot opens it, pictures against its second camera", "GPUs", Same::Anywhere, &[]),
-    describe(["yoro-three", ".tgz"], "three.js", "installed and bundled, pictures against three's own eyes", "headsets", Same::Compilers, &[]),
-    describe(["", ".crate"], "Rust, as the registry takes them", "all tests, before they are packed", "", Same::Compilers, &[]),
-];
-
-const fn describe(
-    parts: [&'static str; 2],
-    title: &'static str,
-    tested: &'static str,
-    untested: &'static str,
-    same: Same,
-    notices: &'static [&'static str],
-) -> Description {
-    Description { parts, title, tested, untested, same, notices }
-}
+/// The descriptions.
+const FILES: &str = include_str!("files.txt");
 
 impl Item {
-    /// All items, in the order in which they are made.
-    pub const ALL: [Item; 10] = [
-        Item::Program,
-        Item::Apk,
-        Item::Layer,
-        Item::Library,
-        Item::Kit,
-        Item::Godot,
-        Item::Crates,
-        Item::Three,
-        Item::Bills,
-        Item::Site,
-    ];
-
     /// Returns the name on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
@@ -122,7 +58,10 @@ impl Item {
         let folder = target_folder()?.join("package");
         make(&folder)?;
         match self {
-            Item::Program => Ok(vec![program::archive(Machine::Native, &folder)?, program::archive(Machine::Arm64, &folder)?]),
+            Item::Program => Ok(vec![
+                program::archive(Machine::Native, &folder)?,
+                program::archive(Machine::Arm64, &folder)?,
+            ]),
             Item::Apk => apks(&folder),
             Item::Layer => package(&[Target::LayerLinux, Target::LayerLinuxAarch64, Target::AndroidLayer]),
             Item::Library => package(&[Target::Linux, Target::LinuxAarch64, Target::Android]),
@@ -183,13 +122,18 @@ impl Description {
     ///
     /// # Errors
     /// Fails if it is no file of a release.
-    pub fn of(file: &Path) -> anyhow::Result<&'static Description> {
+    pub fn of(file: &Path) -> anyhow::Result<Self> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
-        let description = DESCRIPTIONS.iter().find(|description| {
-            let [beginning, other] = description.parts;
-            name.starts_with(beginning) && name.contains(other)
+        let rows =
+            FILES.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once(" | "));
+        let mut fitting = rows.filter(|(parts, _)| {
+            let (beginning, part) = parts.split_once(' ').unwrap_or_default();
+            name.starts_with(beginning) && name.contains(part)
         });
-        description.with_context(|| format!("{} is no file of a release: take it away", file.display()))
+        let (_, cells) = fitting
+            .next()
+            .with_context(|| format!("{} is no file of a release: take it away", file.display()))?;
+        Ok(Self(cells))
     }
 }
 
@@ -212,7 +156,7 @@ mod tests {
             ("yoro-0.1.0-linux-aarch64.tar.xz", "the program: render"),
         ] {
             let description = Description::of(Path::new(name)).unwrap();
-            assert!(description.title.starts_with(title), "{name}: {}", description.title);
+            assert!(description.0.starts_with(title), "{name}: {}", description.0);
         }
         assert!(Description::of(Path::new("notes.txt")).is_err());
     }

@@ -11,14 +11,14 @@ use std::process::Command;
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
+use clap::ValueEnum as _;
 
 use crate::apt::{self, Need};
 use crate::console::run;
 use crate::folders::{copy, copy_folder, make, remove, root, write};
 use crate::rust::{self, Rust};
-use crate::{notices, setup, site, web};
+use crate::{setup, site, web};
 
-use items::Description;
 pub use items::Item;
 
 /// The checksums of all files, as `sha256sum --check` reads them.
@@ -34,7 +34,8 @@ pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
     let start = Instant::now();
     let out = absolute(out).context("the current folder is gone: change to another")?;
     make(&out)?;
-    let items: Vec<Item> = if only.is_empty() { Item::ALL.to_vec() } else { in_order(only) };
+    let is_wanted = |item: &&Item| only.is_empty() || only.contains(item);
+    let items: Vec<Item> = Item::value_variants().iter().filter(is_wanted).copied().collect();
     let commit = commit(&out)?;
     check_origin(&out, &commit)?;
     apt::install_missing(needs, true)?;
@@ -46,9 +47,6 @@ pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
             let name = made.file_name().context("a file without a name was made")?;
             if made.is_dir() {
                 bail!("{} is a folder: it cannot be published", made.display());
-            }
-            if !name.to_string_lossy().ends_with(bills::ENDING) {
-                notices::check(&made, Description::of(&made)?.notices)?;
             }
             copy(&made, &out.join(name))?;
         }
@@ -80,17 +78,11 @@ fn needs() -> Vec<Need> {
     vec![
         Need::program("xz", &["xz-utils"]),
         Need::program("strip", &["binutils"]),
-        Need::program("unzip", &["unzip"]),
         setup::cpp(),
         // Without it, the program's encoder of H.264 has no code for this processor.
         Need::program("nasm", &["nasm"]),
         rust::source(rust.as_ref()),
     ]
-}
-
-/// Returns the items without duplicates, in the order in which they have to be made.
-fn in_order(items: &[Item]) -> Vec<Item> {
-    Item::ALL.into_iter().filter(|item| items.contains(item)).collect()
 }
 
 /// Returns the commit that is built, and says if there are changes beside it, apart from the folder of the release.

@@ -8,11 +8,11 @@ use anyhow::{Context as _, bail};
 use crate::cargo::announce;
 use crate::console::run;
 use crate::folders::{copy, copy_folder, target_folder};
-use crate::package::VERSION;
 use crate::package::layer;
 use crate::package::linux::Machine;
 use crate::package::portable::needed_glibc;
-use crate::{arm64, notices, setup, web};
+use crate::package::texts::readme;
+use crate::{arm64, setup, web};
 
 /// Makes `yoro-VERSION-linux-ARCHITECTURE.tar.xz` with the page that `yoro serve` shows, and returns its path.
 ///
@@ -35,7 +35,9 @@ pub fn archive(machine: Machine, folder: &Path) -> anyhow::Result<PathBuf> {
         Machine::Arm64 => arm64::emulated(&built)?,
     };
     // With one sample a pixel: Mesa 22's rasterizer for arm64 crashes in qemu with four.
-    run(yoro.args(["render", "prototype", "--size", "64x64", "--msaa", "1", "--out"]).arg(output.join("picture")))?;
+    run(yoro
+        .args(["render", "prototype", "--size", "64x64", "--msaa", "1", "--out"])
+        .arg(output.join("picture")))?;
     let layer = layer::library(machine)?;
     machine.pack(folder, "yoro", "yoro-cli", "", |content| {
         let yoro = content.join("bin/yoro");
@@ -46,32 +48,7 @@ pub fn archive(machine: Machine, folder: &Path) -> anyhow::Result<PathBuf> {
             machine.strip(&[], file)?;
         }
         copy_folder(&web::build_once()?, &content.join("web"))?;
-        Ok(readme(machine.architecture(), needed_glibc(&yoro)?.max(needed_glibc(&library)?)))
+        let template = include_str!("../package/templates/README.program.txt");
+        Ok(readme(template, machine.architecture(), needed_glibc(&yoro)?.max(needed_glibc(&library)?)))
     })
-}
-
-fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
-    format!(
-        "# yoro {VERSION} for Linux on {architecture}\n\
-         \n\
-         Needs glibc {major}.{minor} or newer, and EGL with OpenGL ES 3 from the distribution, with a GPU's driver or without:\n\
-         \n\
-         ```sh\n\
-         apt-get install libegl1 libgl1-mesa-dri       # Debian, Ubuntu\n\
-         dnf install libglvnd-egl mesa-dri-drivers     # Fedora, not tried\n\
-         ```\n\
-         \n\
-         ```sh\n\
-         bin/yoro render prototype --measure --out picture    # picture.left.png, and how close the made-up eye is\n\
-         bin/yoro run                                         # all scenes, and a report\n\
-         bin/yoro xr                                          # in a headset, by OpenXR\n\
-         bin/yoro serve street                                # any browser shows it; the address is printed\n\
-         bin/yoro --help\n\
-         ```\n\
-         \n\
-         `lib` has the OpenXR API layer: `bin/yoro layer --help`.\n\
-         \n\
-         MIT or Apache 2.0, at your option; {} has the notices of others' code.\n",
-        notices::FILE
-    )
 }

@@ -11,7 +11,7 @@ use crate::package::VERSION;
 
 use super::SUMS;
 use super::bills::{ENDING, FORMAT};
-use super::items::{Description, Same};
+use super::items::Description;
 
 /// Returns the text for the files in a folder, which were built from a commit.
 ///
@@ -37,9 +37,9 @@ pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
             continue;
         }
         let size = fs::metadata(&path).with_context(|| format!("{} cannot be read", path.display()))?.len();
-        let Description { title, tested, untested, same, .. } = Description::of(&path)?;
+        let Description(cells) = Description::of(&path)?;
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "| `{name}` | {size} | {title} | {tested} | {untested} | {} |", again(*same));
+        let _ = writeln!(text, "| `{name}` | {size} | {cells} |");
     }
     text.push_str(
         "\n\"Same bytes again\": whether the same commit gives the same file. With *the same compilers*: rustc, cargo, npm, and\n\
@@ -52,14 +52,6 @@ pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
 /// Returns the sentence that says of which commit the files are.
 pub fn origin(commit: &str) -> String {
     format!("Built from {commit}.")
-}
-
-fn again(same: Same) -> &'static str {
-    match same {
-        Same::Anywhere => "yes",
-        Same::Compilers => "with the same compilers",
-        Same::Key => "with the same compilers and key",
-    }
 }
 
 #[cfg(test)]

@@ -40,7 +40,13 @@ const fn item(
 }
 
 static ITEMS: [Item; 13] = [
-    item("the page", "WEB", &[("yoro-cli", "web::")], page_can_be_built, Some(|| web::build().and(this_program()))),
+    item(
+        "the page",
+        "WEB",
+        &[("yoro-cli", "web::")],
+        page_can_be_built,
+        Some(|| web::build().and(this_program())),
+    ),
     item(
         "the example of yoro-wgpu for browsers",
         "WGPU_WEB",
@@ -164,9 +170,16 @@ pub struct Equipment {
     pub absent: Vec<String>,
 }
 
-/// What was fetched and built: name, variable and path of each item that is available or not, and how long it took.
+/// An item that was fetched and built, if it is available here.
+struct Made {
+    item: &'static Item,
+    path: Option<PathBuf>,
+    seconds: f64,
+}
+
+/// What was fetched and built.
 #[derive(Default)]
-pub struct Prepared(Vec<(&'static Item, Option<PathBuf>, f64)>);
+pub struct Prepared(Vec<Made>);
 
 impl<'scope> Preparation<'scope> {
     /// Starts the preparation for the selected tests, or for all tests.
@@ -178,7 +191,7 @@ impl<'scope> Preparation<'scope> {
         if !apt::installs_by_itself() {
             setup::ensure()?;
         }
-        let libraries = || Ok(Libraries { osmesa: setup::ensure()?.osmesa, vulkan: setup::vulkan() });
+        let libraries = || Ok(Libraries { osmesa: setup::ensure()?, vulkan: setup::vulkan() });
         let wanted = |item: &&Item| match programs {
             None => true,
             // A few selected tests are not worth the wait for a browser, so they only use an installed one.
@@ -229,7 +242,7 @@ impl<'scope> Preparation<'scope> {
                     None
                 }
             };
-            prepared.0.push((item, path, start.elapsed().as_secs_f64()));
+            prepared.0.push(Made { item, path, seconds: start.elapsed().as_secs_f64() });
         }
         Ok(prepared)
     }
@@ -242,7 +255,7 @@ fn join<T>(handle: ScopedJoinHandle<'_, anyhow::Result<T>>) -> anyhow::Result<T>
 impl Equipment {
     /// Adds what was prepared.
     pub fn add(&mut self, prepared: Prepared, summary: &mut Summary) {
-        for (item, path, seconds) in prepared.0 {
+        for Made { item, path, seconds } in prepared.0 {
             summary.add_phase(&format!("  of it {}", item.what), seconds);
             if path.is_none() {
                 self.absent.push(format!("{} cannot be had here: its tests were left out", item.what));

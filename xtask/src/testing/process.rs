@@ -28,9 +28,8 @@ pub struct Finished {
 /// through a file in `folder`, since a process that the program leaves behind could keep a pipe open.
 pub fn run(command: Command, names: &[String], folder: &Path) -> Finished {
     let start = Instant::now();
-    let (output, succeeded) = output(command, folder).unwrap_or_else(|error| {
-        (format!("it cannot be run: {error}\n"), false)
-    });
+    let (output, succeeded) =
+        output(command, folder).unwrap_or_else(|error| (format!("it cannot be run: {error}\n"), false));
     let mut failed = failures(&output);
     if !succeeded && failed.is_empty() {
         failed = names.to_vec();
@@ -107,7 +106,8 @@ mod tests {
 
     #[test]
     fn results_are_the_programs_own_list_or_all_its_tests() {
-        let passed = run_script("echo 'test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured'", &["a", "b", "c"]);
+        let passed =
+            run_script("echo 'test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured'", &["a", "b", "c"]);
         assert_eq!((passed.counts, passed.failed.len()), ([2, 0, 1], 0));
         let listing = "printf 'test a ... ok\\n\\nfailures:\\n\\n---- b ----\\nfailures\\n\\nfailures:\\n    b\\n\\n\
                        test result: FAILED. 1 passed; 1 failed; 0 ignored; 0\\n'; exit 101";

@@ -7,16 +7,15 @@ mod three;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, bail, ensure};
 
 use crate::cargo::{self, announce};
 use crate::folders::{copy, remove, root, target_folder, write};
-use crate::notices;
 use crate::rust::{Panic, Rust, anonymous_paths, build_std};
+use crate::{console, notices};
 
 pub use npm::{check_types, emulator, npm, three as three_modules};
 pub use serve::serve;
@@ -29,27 +28,16 @@ const EXAMPLE: &str = "offscreen";
 /// Maximum number of bytes transferred by a first visit, since phones load the page over mobile networks.
 const BUDGET: u64 = 1_200_000;
 
-/// Returns the folder of the built page.
+/// Returns the folder of the page or, with `wgpu`, of the example of yoro-wgpu. Builds it unless it is taken `as_built`.
 ///
 /// # Errors
-/// Fails if it has not been built.
-pub fn built() -> anyhow::Result<PathBuf> {
-    as_built("web", "cargo xtask web")
-}
-
-/// Returns the folder of the built example of yoro-wgpu.
-///
-/// # Errors
-/// Fails if it has not been built.
-pub fn built_example() -> anyhow::Result<PathBuf> {
-    as_built("web-wgpu", "cargo xtask web --wgpu")
-}
-
-fn as_built(name: &str, command: &str) -> anyhow::Result<PathBuf> {
-    let folder = target_folder()?.join(name);
-    if !folder.join("index.html").is_file() {
-        bail!("{} has no page: run {command}", folder.display());
+/// Fails as [`build`] does, or if it has not been built.
+pub fn folder(wgpu: bool, as_built: bool) -> anyhow::Result<PathBuf> {
+    if !as_built {
+        return if wgpu { build_example() } else { build() };
     }
+    let folder = target_folder()?.join(if wgpu { "web-wgpu" } else { "web" });
+    ensure!(folder.join("index.html").is_file(), "{} has no page: build it", folder.display());
     Ok(folder)
 }
 
@@ -176,13 +164,7 @@ struct Sizes {
 
 /// Prepares a module for browsers, into `folder`. `page` is the folder with the page's sources.
 fn bind(module: &Path, folder: &Path, page: &Path) -> anyhow::Result<Sizes> {
-    let mut command = cargo::program("yoro-web-bindgen")?;
-    let output = command.arg(module).arg(folder).arg(page).stderr(Stdio::inherit()).output();
-    let output = output.context("yoro-web-bindgen cannot be started")?;
-    if !output.status.success() {
-        bail!("the module cannot be made ready for browsers: see above");
-    }
-    let text = String::from_utf8_lossy(&output.stdout);
+    let text = console::run(cargo::program("yoro-web-bindgen")?.arg(module).arg(folder).arg(page))?;
     let numbers: Vec<u64> = text.split_whitespace().filter_map(|number| number.parse().ok()).collect();
     match numbers[..] {
         [module, transferred, visit] => Ok(Sizes { module, transferred, visit }),

@@ -1,13 +1,13 @@
 //! npm packages: an emulated headset for tests, a type checker, and what the package for three.js is tested with.
 
-use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, ensure};
 
 use crate::apt;
-use crate::folders::{copy, make_once, root, target_folder};
+use crate::console::run;
+use crate::folders::{copy, make, make_once, read_text, root, target_folder};
 
 /// Returns the script of the Immersive Web Emulation Runtime, which emulates a headset in the page's tests.
 ///
@@ -25,24 +25,16 @@ pub fn emulator() -> anyhow::Result<PathBuf> {
 pub fn three() -> anyhow::Result<PathBuf> {
     let (source, folder) = (root().join("tests/three"), target_folder()?.join("three"));
     let lock = "package-lock.json";
-    let recipe = fs::read_to_string(source.join(lock)).with_context(|| format!("{lock} cannot be read"))?;
+    let recipe = read_text(&source.join(lock))?;
     make_once(&folder, &recipe, || {
         for name in ["package.json", lock] {
             copy(&source.join(name), &folder.join(name))?;
         }
-        let mut npm = npm();
-        npm.args(["ci", "--loglevel=error", "--ignore-scripts", "--no-audit", "--no-fund"])
-            .current_dir(&folder);
-        let output = npm.output().context(NO_NPM)?;
-        if !output.status.success() {
-            bail!("npm cannot fetch three.js: {}", String::from_utf8_lossy(&output.stderr).trim());
-        }
-        Ok(())
+        let arguments = ["ci", "--loglevel=error", "--ignore-scripts", "--no-audit", "--no-fund"];
+        run(npm().args(arguments).current_dir(&folder)).map(drop)
     })?;
     Ok(folder.join("node_modules"))
 }
-
-const NO_NPM: &str = "npm cannot be started: apt-get install npm";
 
 /// Returns the command `npm`. Installs it if it is missing and apt has it.
 pub fn npm() -> Command {
@@ -78,18 +70,10 @@ fn fetch(name: &str, package: &str, script: &str) -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join(name);
     let script = folder.join("package").join(script);
     make_once(&folder, package, || {
-        fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
-        let mut npm = npm();
-        npm.args(["pack", "--loglevel=error", package]).current_dir(&folder);
-        let output = npm.output().context(NO_NPM)?;
-        if !output.status.success() {
-            bail!("npm cannot fetch {package}: {}", String::from_utf8_lossy(&output.stderr).trim());
-        }
-        let archive = String::from_utf8_lossy(&output.stdout).trim().to_owned();
-        let unpacked = Command::new("tar").args(["-xzf", &archive]).current_dir(&folder).status();
-        if !unpacked.context("tar cannot be started")?.success() || !script.is_file() {
-            bail!("{package} has not the script that was expected");
-        }
+        make(&folder)?;
+        let archive = run(npm().args(["pack", "--loglevel=error", package]).current_dir(&folder))?;
+        run(Command::new("tar").args(["-xzf", archive.trim()]).current_dir(&folder))?;
+        ensure!(script.is_file(), "{package} has not the script that was expected");
         Ok(())
     })?;
     Ok(script)
@@ -102,7 +86,7 @@ mod tests {
     /// npm 9, Debian 12's, takes no lock that names a repository where `overrides` names a version.
     #[test]
     fn the_lock_names_versions_alone() {
-        let lock = fs::read_to_string(root().join("tests/three/package-lock.json")).unwrap();
+        let lock = read_text(&root().join("tests/three/package-lock.json")).unwrap();
         let repositories: Vec<_> = lock.lines().filter(|line| line.contains('#')).collect();
         assert!(repositories.is_empty(), "write the version there: {repositories:?}");
     }

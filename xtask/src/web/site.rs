@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use anyhow::Context as _;
 use yoro_files::http::POLICY;
 
-use crate::folders::{self, copy, root};
+use crate::folders::{self, copy, read, read_text, root};
 
 /// The placeholder for the version in the page's sources.
 pub const VERSION: &str = "VERSION";
@@ -70,29 +70,23 @@ pub fn assemble(folder: &Path) -> anyhow::Result<()> {
     fs::rename(&unnamed, &named).with_context(|| format!("{} cannot be written", named.display()))?;
     for name in ["index.html", "offline.js"] {
         let path = folder.join(name);
-        let text = String::from_utf8_lossy(&read(&path)?).into_owned();
+        let text = read_text(&path)?;
         folders::write(&path, fill(&text, &version, &names, source))?;
     }
     folders::write(&folder.join("_headers"), headers(&version))
 }
 
-/// Copies the built page into a folder that may hold earlier versions. The document is copied last.
+/// Copies the built page into a folder that may hold earlier versions.
 ///
 /// # Errors
 /// Fails if a file cannot be written.
 pub fn publish(built: &Path, out: &Path) -> anyhow::Result<()> {
-    for entry in fs::read_dir(built).with_context(|| format!("{} cannot be read", built.display()))? {
-        let path = entry?.path();
-        if path.is_dir() {
-            for file in files(&path)? {
-                copy(&file, &out.join(name(&path)).join(name(&file)))?;
-            }
-        }
+    let mut all = folders::files(built)?;
+    // The document comes last.
+    all.sort_by_key(|(name, _)| name == "index.html");
+    for (name, file) in all {
+        copy(&file, &out.join(name))?;
     }
-    for file in files(built)?.into_iter().filter(|file| name(file) != "index.html") {
-        copy(&file, &out.join(name(&file)))?;
-    }
-    copy(&built.join("index.html"), &out.join("index.html"))?;
     println!("{}: copy it to any static host; earlier versions in it keep working", out.display());
     Ok(())
 }
@@ -131,21 +125,14 @@ fn headers(version: &str) -> String {
     )
 }
 
-/// Returns the files of a folder, sorted by name.
+/// Returns the files of a folder, without those of its folders, sorted by name.
 fn files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let entries = fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))?;
-    let mut found = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;
-    found.retain(|path| path.is_file());
-    found.sort();
-    Ok(found)
+    let found = folders::files(folder)?.into_iter();
+    Ok(found.filter(|(name, _)| !name.contains('/')).map(|(_, path)| path).collect())
 }
 
 fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
-    fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
 }
 
 #[cfg(test)]

@@ -1,13 +1,11 @@
 //! The example of the package for three.js beside the page, bundled with three.js.
 
-use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
-
 use super::npm;
-use crate::folders::{copy, root};
+use crate::console::run;
+use crate::folders::{copy, read_text, root};
 
 /// Writes the example into a folder, and returns the notice of three.js, which is in it.
 ///
@@ -21,14 +19,11 @@ pub fn example(folder: &Path) -> anyhow::Result<String> {
     esbuild.args(["--bundle", "--minify", "--format=esm", "--log-level=error"]);
     esbuild.arg(format!("--alias:yoro-three={}", package.join("src/index.js").display()));
     esbuild.arg(format!("--outfile={}", folder.join("main.js").display())).env("NODE_PATH", &modules);
-    if !esbuild.status().context("node cannot be started: apt-get install nodejs")?.success() {
-        bail!("it cannot be bundled: see above");
-    }
+    run(&mut esbuild)?;
     for name in ["index.html", "style.css"] {
         copy(&package.join("examples").join(name), &folder.join(name))?;
     }
     let licence = modules.join("three/LICENSE");
-    let text =
-        fs::read_to_string(&licence).with_context(|| format!("{} cannot be read", licence.display()))?;
+    let text = read_text(&licence)?;
     Ok(format!("\n{}\nthree.js, in the folder three (MIT)\n\n{text}", "=".repeat(78)))
 }

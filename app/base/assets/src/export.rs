@@ -89,7 +89,7 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Fi
 }
 
 fn notes(material: &Material) -> MaterialNotes {
-    MaterialNotes { alpha: material.alpha.into(), double_sided: material.double_sided, unlit: material.unlit }
+    MaterialNotes { alpha: material.alpha, double_sided: material.double_sided, unlit: material.unlit }
 }
 
 fn write_obj(out: &mut impl Write, scene: &Scene, name: &str, materials: &[String]) -> io::Result<()> {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::defaults;
 use super::error::{SceneError, file_size};
-use super::gltf::{GltfScene, load_gltf};
+use super::gltf::load_gltf;
 use super::model::{Alpha, Model, PointLight, ShadingStyle, Sky, Viewpoint};
 use super::motion::Motion;
 use super::obj::load_obj;
@@ -47,7 +47,7 @@ pub struct SceneNotes {
 #[serde(deny_unknown_fields)]
 pub struct MaterialNotes {
     /// How the diffuse map's alpha is used.
-    pub alpha: AlphaNotes,
+    pub alpha: Alpha,
     /// Drawn from both sides.
     pub double_sided: bool,
     /// Shown in its own colour, whatever the light.
@@ -55,47 +55,21 @@ pub struct MaterialNotes {
     pub unlit: bool,
 }
 
-/// [`Alpha`] in a file: `"opaque"`, `{"cutout": 0.5}` or `{"blend": 0.3}`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AlphaNotes {
-    /// Ignored.
-    Opaque,
-    /// Discarded below the cut-off.
-    Cutout(f32),
-    /// Blended with this opacity.
-    Blend(f32),
-}
-
-impl From<Alpha> for AlphaNotes {
-    fn from(alpha: Alpha) -> AlphaNotes {
-        match alpha {
-            Alpha::Opaque => AlphaNotes::Opaque,
-            Alpha::Cutout(c) => AlphaNotes::Cutout(c),
-            Alpha::Blend(o) => AlphaNotes::Blend(o),
-        }
-    }
-}
-
-impl From<AlphaNotes> for Alpha {
-    fn from(alpha: AlphaNotes) -> Alpha {
-        match alpha {
-            AlphaNotes::Opaque => Alpha::Opaque,
-            AlphaNotes::Cutout(c) => Alpha::Cutout(c),
-            AlphaNotes::Blend(o) => Alpha::Blend(o),
-        }
-    }
-}
-
-/// The contents of a model file and the files beside it.
-struct Loaded {
-    model: Model,
-    cameras: Vec<Viewpoint>,
-    sky: Option<Sky>,
-    lights: Option<Vec<PointLight>>,
-    motion: Motion,
-    /// What was subtracted from all positions, in the model's units.
-    subtracted: DVec3,
+/// The contents of a model file.
+#[derive(Default)]
+pub(super) struct Loaded {
+    /// Triangles, materials and pictures.
+    pub model: Model,
+    /// The file's cameras.
+    pub cameras: Vec<Viewpoint>,
+    /// Its first directional light, as the sun.
+    pub sky: Option<Sky>,
+    /// Its point and spot lights, without their cones.
+    pub lights: Option<Vec<PointLight>>,
+    /// What moves. Everything else is in its state at time 0.
+    pub motion: Motion,
+    /// What was subtracted from all positions, in the file's units: not zero if the model is far from its origin.
+    pub subtracted: DVec3,
 }
 
 impl Loaded {
@@ -181,17 +155,13 @@ pub fn load_animated(path: &Path, animation: Option<&str>) -> Result<Scene, Scen
     let mut file = match (extension.as_str(), animation) {
         ("obj", None) => {
             let (model, subtracted) = load_obj(path)?;
-            let (cameras, motion) = (Vec::new(), Motion::default());
-            Loaded { model, cameras, sky: None, lights: None, motion, subtracted }
+            Loaded { model, subtracted, ..Loaded::default() }
         }
         ("obj", Some(animation)) => {
             let what = format!("it has no animation {animation}: OBJ files have none, glTF files may");
             return Err(SceneError::unusable(path, what));
         }
-        ("gltf" | "glb", _) => {
-            let GltfScene { model, cameras, sky, lights, motion, subtracted } = load_gltf(path, animation)?;
-            Loaded { model, cameras, sky, lights, motion, subtracted }
-        }
+        ("gltf" | "glb", _) => load_gltf(path, animation)?,
         _ => {
             let path = path.display();
             return Err(SceneError::Unusable(format!(
@@ -212,7 +182,7 @@ pub fn load_animated(path: &Path, animation: Option<&str>) -> Result<Scene, Scen
     if let Some((_, notes)) = notes {
         for m in &mut model.materials {
             if let Some(n) = notes.materials.get(&m.name) {
-                (m.alpha, m.double_sided, m.unlit) = (n.alpha.into(), n.double_sided, n.unlit);
+                (m.alpha, m.double_sided, m.unlit) = (n.alpha, n.double_sided, n.unlit);
             }
         }
         model.textures.iter_mut().filter(|t| notes.nearest.contains(&t.name)).for_each(|t| t.nearest = true);
@@ -321,8 +291,8 @@ fn check_notes(file: &Path, notes: &SceneNotes) -> Result<(), SceneError> {
         return fault("lights need finite positions, colours of 0 or more and a range greater than 0");
     }
     let within = |m: &MaterialNotes| match m.alpha {
-        AlphaNotes::Opaque => true,
-        AlphaNotes::Cutout(a) | AlphaNotes::Blend(a) => (0.0..=1.0).contains(&a),
+        Alpha::Opaque => true,
+        Alpha::Cutout(a) | Alpha::Blend(a) => (0.0..=1.0).contains(&a),
     };
     if !notes.materials.values().all(within) {
         return fault("cut-offs and opacities lie between 0 and 1");

@@ -39,8 +39,9 @@ pub struct Part {
     pub indices: Range<usize>,
 }
 
-/// How the diffuse map's alpha is used.
+/// How the diffuse map's alpha is used. In a file: `"opaque"`, `{"cutout": 0.5}` or `{"blend": 0.3}`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Alpha {
     /// Ignored.
     #[default]

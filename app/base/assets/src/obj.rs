@@ -456,11 +456,7 @@ impl<R: BufRead> Normalizer<R> {
         }
         self.counts[kind] += 1;
         if self.counts[kind] > MAX_ELEMENTS {
-            return Err(SceneError::TooLarge {
-                path: self.path.clone(),
-                limit: MAX_ELEMENTS,
-                what: "vertices",
-            });
+            return Err(SceneError::too_large(&self.path, MAX_ELEMENTS, "vertices"));
         }
         let mut near = [const { String::new() }; 3];
         if let Some(subtracted) = self.subtracted.filter(|_| kind == 0) {
@@ -510,11 +506,7 @@ impl<R: BufRead> Normalizer<R> {
         }
         self.corners += corners;
         if self.corners > MAX_ELEMENTS {
-            return Err(SceneError::TooLarge {
-                path: self.path.clone(),
-                limit: MAX_ELEMENTS,
-                what: "corners of faces",
-            });
+            return Err(SceneError::too_large(&self.path, MAX_ELEMENTS, "corners of faces"));
         }
         if corners < 3 {
             // Points and lines are dropped; the part that was begun for them stays open.

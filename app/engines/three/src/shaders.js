@@ -1,4 +1,4 @@
-// yoro 0.1.0, synthesis passes, written from its GLSL by `cargo xtask maintain shaders`. Do not edit.
+// yoro 0.1.0, synthesis passes, written from its GLSL by `cargo xtask maintain renew`. Do not edit.
 // SPDX-License-Identifier: MIT OR Apache-2.0
 export const precisions = 'precision highp float;precision highp int;precision highp sampler2D;precision highp usampler2D;';
 export const screenVertex = /* glsl */`${precisions}
@@ -87,7 +87,6 @@ uniform float farthest;
 uniform ivec2 source_origin;
 uniform vec2 texel;
 const float MAX_STRETCH=2.0;
-float fill_spread(float away){return 0.5*clamp(abs(away),1.0,12.0);}
 const ivec2 TILE=ivec2(16,8);
 uniform sampler2D depth_map;
 uniform sampler2D color_map;
@@ -105,15 +104,11 @@ in vec2 span_at;
 uvec4 pixel_span(){return texture(span_map,span_at);}
 float lowest_bit(uint bits){float power=float(bits&(~bits+1u));return float(floatBitsToUint(power)>>23)-127.0;}
 const float NO_PLANE=9.0;
-vec4 fill_hole(vec4 color,float away,float x,float depth){float spread=fill_spread(away);vec4 sum=2.0*color;float weights=2.0;for(int i=1;i<=2;++i){float distance=roundEven(float(i)*spread);vec2 below=vec2(column_at(x),row_at(-distance));vec2 above=vec2(column_at(x),row_at(distance));vec2 depths=vec2(depth_sample(below),depth_sample(above));vec2 weight=vec2(lessThanEqual(law.y*(depths-depth),vec2(1.0)));sum+=weight.x*color_sample(below)+weight.y*color_sample(above);weights+=weight.x+weight.y;}return sum/weights;}
 uniform highp usampler2D tile_map;
 struct Surface{float source;float depth;bool hole;};
-const int LAW=1;
-const int SEARCH=2;
-const int SEGMENTS=4;
-const int EVENTS=8;
-const int FILL=16;
-const int CROSSING=32;
+struct Edge{float x;float depth;};
+vec4 tap_beside(Edge edge,float distance,out float nearer){vec2 place=vec2(column_at(edge.x),row_at(distance));nearer=law.y*(depth_sample(place)-edge.depth);return color_sample(place);}
+vec4 fill_hole(Edge edge,vec4 color,float away){float spread=0.5*clamp(abs(away),1.0,12.0);vec4 sum=2.0*color;float weights=2.0;for(int i=1;i<=2;++i){float distance=roundEven(float(i)*spread);vec2 nearer;vec4 below=tap_beside(edge,-distance,nearer.x);vec4 above=tap_beside(edge,distance,nearer.y);vec2 weight=vec2(lessThanEqual(nearer,vec2(1.0)));sum+=weight.x*below+weight.y*above;weights+=weight.x+weight.y;}return sum/weights;}
 struct Search{float x;vec2 depths;float a;float b;};
 vec2 depth_pair(float x){vec4 quad=depth_gather(vec2(columns.x*(x+1.25)+columns.y,row_at(0.25)));return mirrored?quad.zw:quad.wz;}
 Search search_at(float x,float origin){vec2 depths=depth_pair(x);float shift=x-origin;return Search(x,depths,shift+law.y*depths.x,shift+1.0+law.y*depths.y);}
@@ -121,13 +116,13 @@ bool is_event(float a,float b){return a<=0.0&&(b>0.0||max(b,-1.0)<a);}
 float segment_end(float x,int tile_row,bool below,uint shift){uint column=uint(x);uint within=column%uint(TILE.x);uvec4 tile=texelFetch(tile_map,ivec2(column/uint(TILE.x),tile_row),0);uint marks=(below?tile.y:tile.w)>>(shift+within);marks=tile.z==floatBitsToUint(NO_PLANE)?marks:0u;return x+lowest_bit(marks|0x10000u>>within);}
 struct Beside{float edge;float edge_depth;float rim;float rim_depth;};
 bool meet(inout Beside beside,Search at){bool jump=at.b>0.0;bool torn=at.b-at.a>=MAX_STRETCH;bool rim=beside.rim<0.0&&(!jump||(torn&&at.b<1.0));beside.rim=rim?at.x+(jump?1.0:0.0):beside.rim;beside.rim_depth=rim?(jump?at.depths.y:at.depths.x):beside.rim_depth;bool farther=jump&&law.y*(at.depths.x-beside.edge_depth)<0.0;beside.edge=farther?at.x:beside.edge;beside.edge_depth=farther?at.depths.x:beside.edge_depth;return jump&&(at.a>-0.5||!torn);}
-vec4 march(Search at,float end,float origin,int row,out Surface surface){float border=at.a-at.x;bool outside=at.x<=0.0&&border>0.0;end=outside&&border<0.5?0.0:end;Beside beside;beside.edge=outside?0.0:-1.0;beside.edge_depth=outside?at.depths.x:law.y<0.0?-1e9:1e9;beside.rim=-1.0;beside.rim_depth=0.0;bool found=false;if((63&EVENTS)!=0&&at.x>=0.0&&at.x<end&&is_event(at.a,at.b)){found=meet(beside,at);}float x=max(at.x+1.0,0.0);float a=at.b+(x-at.x-1.0);int tile_row=row/TILE.y;bool below=(row&4)==0;uint shift=uint(row&2)<<3;bool crosses=false;while(x<=end&&!found){at=search_at(min(segment_end(x,tile_row,below,shift),end),origin);crosses=a<=0.0&&at.a>0.0;found=crosses;if((63&EVENTS)!=0&&!crosses&&at.x<end&&is_event(at.a,at.b)){found=meet(beside,at);}x=found?x:at.x+1.0;a=found?a:at.b;}float last=at.x;float b=at.a;while((63&CROSSING)!=0&&crosses&&x<last){at=search_at(clamp(floor(x+(last-x)*a/(a-b)),x,last-1.0),origin);crosses=at.a>0.0||at.b<=0.0;bool behind=at.a>0.0;x=behind?x:at.x+1.0;a=behind?a:at.b;last=behind?at.x:last;b=behind?at.a:b;}bool own=found||beside.edge<0.0;x=own?min(at.x,end):beside.edge;float t=found&&at.b-at.a<MAX_STRETCH?-at.a/(at.b-at.a):0.0;surface.source=x+t;surface.depth=own?mix(at.depths.x,at.depths.y,t):beside.edge_depth;float away=x-origin+law.y*surface.depth;surface.hole=!found&&abs(away)>=0.5;vec4 color=color_sample(vec2(column_at(surface.source),row_at(0.0)));if((63&FILL)!=0&&surface.hole){color=fill_hole(color,away,x,surface.depth);}if(beside.rim>=0.0){float coverage=1.0-abs(beside.rim-origin+law.y*beside.rim_depth);color=mix(color,color_sample(vec2(column_at(beside.rim),row_at(0.0))),coverage);if(coverage>=0.5){surface=Surface(beside.rim,beside.rim_depth,false);}}return color;}
+vec4 march(Search at,float end,float origin,int row,out Surface surface){float border=at.a-at.x;bool outside=at.x<=0.0&&border>0.0;end=outside&&border<0.5?0.0:end;Beside beside;beside.edge=outside?0.0:-1.0;beside.edge_depth=outside?at.depths.x:law.y<0.0?-1e9:1e9;beside.rim=-1.0;beside.rim_depth=0.0;bool found=false;if(at.x>=0.0&&at.x<end&&is_event(at.a,at.b)){found=meet(beside,at);}float x=max(at.x+1.0,0.0);float a=at.b+(x-at.x-1.0);int tile_row=row/TILE.y;bool below=(row&4)==0;uint shift=uint(row&2)<<3;bool crosses=false;while(x<=end&&!found){at=search_at(min(segment_end(x,tile_row,below,shift),end),origin);crosses=a<=0.0&&at.a>0.0;found=crosses;if(!crosses&&at.x<end&&is_event(at.a,at.b)){found=meet(beside,at);}x=found?x:at.x+1.0;a=found?a:at.b;}float last=at.x;float b=at.a;while(crosses&&x<last){at=search_at(clamp(floor(x+(last-x)*a/(a-b)),x,last-1.0),origin);crosses=at.a>0.0||at.b<=0.0;bool behind=at.a>0.0;x=behind?x:at.x+1.0;a=behind?a:at.b;last=behind?at.x:last;b=behind?at.a:b;}bool own=found||beside.edge<0.0;x=own?min(at.x,end):beside.edge;float t=found&&at.b-at.a<MAX_STRETCH?-at.a/(at.b-at.a):0.0;surface.source=x+t;surface.depth=own?mix(at.depths.x,at.depths.y,t):beside.edge_depth;float away=x-origin+law.y*surface.depth;surface.hole=!found&&abs(away)>=0.5;vec4 color=color_sample(vec2(column_at(surface.source),row_at(0.0)));if(surface.hole){color=fill_hole(Edge(x,surface.depth),color,away);}if(beside.rim>=0.0){float coverage=1.0-abs(beside.rim-origin+law.y*beside.rim_depth);color=mix(color,color_sample(vec2(column_at(beside.rim),row_at(0.0))),coverage);if(coverage>=0.5){surface=Surface(beside.rim,beside.rim_depth,false);}}return color;}
 layout(location=0)out vec4 color;
 int source_row(){return int(clamp(gl_FragCoord.y-first_row,0.0,float(source_size.y-1)));}
 const float FIRST_STEPS=2.0;
 vec4 sample_planar(vec3 affine,out Surface surface){float place=affine.x+affine.y*gl_FragCoord.x+affine.z*gl_FragCoord.y;surface.source=clamp((place-columns.y)/columns.x-0.5,0.0,float(source_size.x-1));surface.depth=(origins.x*gl_FragCoord.x+origins.y-surface.source)/law.y;if(law.y==0.0){vec2 depths=depth_pair(floor(surface.source));surface.depth=mix(depths.x,depths.y,fract(surface.source));}surface.hole=false;vec2 at=vec2(place,row_at(0.0));return color_sample(at);}
-vec4 searched(uint span,out Surface surface){float origin=origins.x*gl_FragCoord.x+origins.y;Search at=search_at(floor(origin-farthest-uintBitsToFloat(span)),origin);float end=min(max(at.x,0.0)+span_steps(span),float(source_size.x-1));float limit=min(at.x+FIRST_STEPS,end);for(;at.x<limit&&at.b<=0.0&&max(at.b,-1.0)>=at.a;at.x+=1.0){float next=depth_sample(vec2(column_at(at.x+2.0),row_at(0.0)));at.depths=vec2(at.depths.y,next);at.a=at.b;at.b=at.x+2.0-origin+law.y*next;}float stretch=at.b-at.a;float t=-at.a/stretch;surface=Surface(at.x+t,mix(at.depths.x,at.depths.y,t),false);vec4 seen=color_sample(vec2(column_at(surface.source),row_at(0.0)));float middle=0.5*float(source_size.x-1);bool done=at.a<=0.0&&at.b>0.0&&stretch<MAX_STRETCH&&abs(surface.source-middle)<=middle;if((63&SEGMENTS)!=0&&!done){seen=march(at,end,origin,source_row(),surface);}return seen;}
-void main(){uvec4 span=pixel_span();Surface surface;if((63&LAW)!=0&&span.y!=0u){color=sample_planar(uintBitsToFloat(span.xyz),surface);}else if((63&SEARCH)!=0){color=searched(span.x,surface);}else{discard;}gl_FragDepth=surface.depth;}`;
+vec4 searched(uint span,out Surface surface){float origin=origins.x*gl_FragCoord.x+origins.y;Search at=search_at(floor(origin-farthest-uintBitsToFloat(span)),origin);float end=min(max(at.x,0.0)+span_steps(span),float(source_size.x-1));float limit=min(at.x+FIRST_STEPS,end);for(;at.x<limit&&at.b<=0.0&&max(at.b,-1.0)>=at.a;at.x+=1.0){float next=depth_sample(vec2(column_at(at.x+2.0),row_at(0.0)));at.depths=vec2(at.depths.y,next);at.a=at.b;at.b=at.x+2.0-origin+law.y*next;}float stretch=at.b-at.a;float t=-at.a/stretch;surface=Surface(at.x+t,mix(at.depths.x,at.depths.y,t),false);vec4 seen=color_sample(vec2(column_at(surface.source),row_at(0.0)));float middle=0.5*float(source_size.x-1);bool done=at.a<=0.0&&at.b>0.0&&stretch<MAX_STRETCH&&abs(surface.source-middle)<=middle;if(!done){seen=march(at,end,origin,source_row(),surface);}return seen;}
+void main(){uvec4 span=pixel_span();Surface surface;if(span.y!=0u){color=sample_planar(uintBitsToFloat(span.xyz),surface);}else{color=searched(span.x,surface);}gl_FragDepth=surface.depth;}`;
 export const nearFraction = /* glsl */`${precisions}
 uniform highp sampler2D depth_map;
 float depth_of(ivec2 p){return texelFetch(depth_map,p,0).x;}

@@ -10,35 +10,22 @@ pub(crate) const MAP: TextureFormat = TextureFormat::Rgba32Uint;
 
 /// Buffers for the largest sizes so far.
 pub(crate) struct Buffers {
-    source_size: [u32; 2],
-    target_size: [u32; 2],
+    /// The sizes of source and target.
+    sizes: [[u32; 2]; 2],
     pub(crate) tiles: TextureView,
     pub(crate) spans: TextureView,
 }
 
 impl Buffers {
-    /// True if images of these sizes fit.
-    pub(crate) fn hold(&self, source_size: [u32; 2], target_size: [u32; 2]) -> bool {
-        self.grown(source_size, target_size) == (self.source_size, self.target_size)
+    /// Returns larger sizes if images of these sizes do not fit.
+    pub(crate) fn grown(&self, sizes: [[u32; 2]; 2]) -> Option<[[u32; 2]; 2]> {
+        let grown = [0, 1].map(|image| [0, 1].map(|i: usize| self.sizes[image][i].max(sizes[image][i])));
+        Some(grown).filter(|grown| *grown != self.sizes)
     }
 
-    /// Returns the sizes that are needed for both these buffers and the given images.
-    pub(crate) fn grown(&self, source_size: [u32; 2], target_size: [u32; 2]) -> ([u32; 2], [u32; 2]) {
-        let larger = |a: [u32; 2], b: [u32; 2]| [a[0].max(b[0]), a[1].max(b[1])];
-        (larger(self.source_size, source_size), larger(self.target_size, target_size))
-    }
-
-    pub(crate) fn new<W: WarpKind>(
-        device: &Device,
-        (source_size, target_size): ([u32; 2], [u32; 2]),
-    ) -> Buffers {
-        let [tiles, spans] = map_sizes::<W>([source_size, target_size]);
-        Buffers {
-            source_size,
-            target_size,
-            tiles: map(device, "yoro tiles", tiles),
-            spans: map(device, "yoro spans", spans),
-        }
+    pub(crate) fn new<W: WarpKind>(device: &Device, sizes: [[u32; 2]; 2]) -> Buffers {
+        let [tiles, spans] = map_sizes::<W>(sizes);
+        Buffers { sizes, tiles: map(device, "yoro tiles", tiles), spans: map(device, "yoro spans", spans) }
     }
 
     /// Returns the size of all texels in bytes.

@@ -72,11 +72,9 @@ impl<W: WarpKind> Pipeline<W> {
         max_source_size: [u32; 2],
         max_target_size: [u32; 2],
     ) -> Result<(), WgpuError> {
-        let sizes = match &self.buffers {
-            Some(buffers) if buffers.hold(max_source_size, max_target_size) => return Ok(()),
-            Some(buffers) => buffers.grown(max_source_size, max_target_size),
-            None => (max_source_size, max_target_size),
-        };
+        let sizes = [max_source_size, max_target_size];
+        let sizes = self.buffers.as_ref().map_or(Some(sizes), |buffers| buffers.grown(sizes));
+        let Some(sizes) = sizes else { return Ok(()) };
         self.buffers = Some(made(device, || Buffers::new::<W>(device, sizes))?);
         // The bindings refer to the old buffers.
         self.kept.clear();

@@ -1,4 +1,4 @@
-//! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo xtask maintain shaders`.
+//! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo xtask maintain renew`.
 
 use yoro::synthesis::backend::{PerKind, WarpKind};
 

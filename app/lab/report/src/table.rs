@@ -11,6 +11,8 @@ pub enum Kind {
     /// A name or a fact.
     #[default]
     Plain,
+    /// A text that may take several lines.
+    Long,
     /// One of our figures.
     Ours,
     /// A baseline that our figures are compared with.
@@ -34,6 +36,11 @@ impl Cell {
     /// Returns a cell with a name or a fact.
     pub fn plain(text: impl Into<String>) -> Cell {
         Cell { text: text.into(), kind: Kind::Plain, span: 1 }
+    }
+
+    /// Returns a cell with a text that may take several lines.
+    pub fn long(text: impl Into<String>) -> Cell {
+        Cell { text: text.into(), kind: Kind::Long, span: 1 }
     }
 
     /// Returns a cell with one of our figures, or a dash if it is `None`.
@@ -113,17 +120,9 @@ impl Table {
         self.lines.push(Line { cells, first });
     }
 
-    /// Removes the last column.
-    pub fn drop_last_column(&mut self) {
-        self.columns.pop();
-        for line in &mut self.lines {
-            match line.cells.last_mut() {
-                Some(last) if last.span > 1 => last.span -= 1,
-                _ => {
-                    line.cells.pop();
-                }
-            }
-        }
+    /// Appends a column of numbers, without cells.
+    pub fn push_column(&mut self, name: &str) {
+        self.columns.push(Column { name: name.into(), left: false });
     }
 
     /// Appends a row whose figures are replaced by the reason for their absence.

@@ -53,7 +53,8 @@ fn zip(files: &Files, packed: &Path) -> anyhow::Result<()> {
 }
 
 fn unzip(packed: &Path) -> anyhow::Result<Files> {
-    let mut zip = ZipArchive::new(File::open(packed)?).with_context(|| format!("{} is damaged", packed.display()))?;
+    let mut zip =
+        ZipArchive::new(File::open(packed)?).with_context(|| format!("{} is damaged", packed.display()))?;
     let mut files = Files::new();
     for index in 0..zip.len() {
         let mut file = zip.by_index(index)?;
@@ -82,7 +83,9 @@ fn place(name: &str) -> Option<String> {
     match name {
         "AndroidManifest.xml" => Some(MANIFEST.into()),
         "resources.pb" => Some("base/resources.pb".into()),
-        _ => ["res/", "lib/", "assets/"].iter().any(|it| name.starts_with(it)).then(|| format!("base/{name}")),
+        _ => {
+            ["res/", "lib/", "assets/"].iter().any(|it| name.starts_with(it)).then(|| format!("base/{name}"))
+        }
     }
 }
 
@@ -92,14 +95,20 @@ fn place(name: &str) -> Option<String> {
 /// Fails if aapt2 is missing, or cannot read the manifest or the resources.
 pub fn check(bundle: &Path, apk: &Path, report: &mut Report) -> anyhow::Result<()> {
     let files = unzip(bundle)?;
-    let problem = SETTINGS.iter().find(|(wanted, bytes)| {
-        !files.iter().any(|(name, content)| name == wanted && content == bytes)
-    });
+    let problem = SETTINGS
+        .iter()
+        .find(|(wanted, bytes)| !files.iter().any(|(name, content)| name == wanted && content == bytes));
     let problem = problem.map(|(name, _)| format!("{name} is not as bundletool wants it"));
     report.row("layout", "one module, a folder for each processor", problem);
-    let is_known = |name: &str| ["base/", "META-INF/"].iter().any(|it| name.starts_with(it)) || name == CONFIG;
-    let strange: Vec<String> = files.iter().map(|(name, _)| name.clone()).filter(|name| !is_known(name)).collect();
-    report.row("modules", "base", (!strange.is_empty()).then(|| format!("bundletool refuses {}", shortened(&strange))));
+    let is_known =
+        |name: &str| ["base/", "META-INF/"].iter().any(|it| name.starts_with(it)) || name == CONFIG;
+    let strange: Vec<String> =
+        files.iter().map(|(name, _)| name.clone()).filter(|name| !is_known(name)).collect();
+    report.row(
+        "modules",
+        "base",
+        (!strange.is_empty()).then(|| format!("bundletool refuses {}", shortened(&strange))),
+    );
 
     let module = files.into_iter().filter_map(|(name, content)| match name.as_str() {
         MANIFEST => Some(("AndroidManifest.xml".to_owned(), content)),

@@ -36,26 +36,34 @@ pub enum Store {
     Play,
 }
 
-/// The result of all checks: what was checked, what was found, and the problem with it, if there is one.
+/// The result of a check.
+#[derive(Debug)]
+struct Row {
+    what: String,
+    found: String,
+    problem: Option<String>,
+}
+
+/// The results of all checks.
 #[derive(Debug, Default)]
-pub struct Report(Vec<(String, String, Option<String>)>);
+pub struct Report(Vec<Row>);
 
 impl Report {
     /// True if no row has a problem.
     pub fn passed(&self) -> bool {
-        self.0.iter().all(|(_, _, problem)| problem.is_none())
+        self.0.iter().all(|row| row.problem.is_none())
     }
 
     /// Adds a row.
     pub fn row(&mut self, what: impl Into<String>, found: impl Into<String>, problem: Option<String>) {
-        self.0.push((what.into(), found.into(), problem));
+        self.0.push(Row { what: what.into(), found: found.into(), problem });
     }
 }
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = self.0.iter().map(|(what, ..)| what.len()).max().unwrap_or(0);
-        for (what, found, problem) in &self.0 {
+        let width = self.0.iter().map(|row| row.what.len()).max().unwrap_or(0);
+        for Row { what, found, problem } in &self.0 {
             match problem {
                 None => writeln!(f, "  ok    {what:width$}  {found}")?,
                 Some(problem) => writeln!(f, "  FAIL  {what:width$}  {found}: {problem}")?,
@@ -74,17 +82,19 @@ pub fn shortened(names: &[String]) -> String {
     }
 }
 
-/// Runs all checks on an APK or a bundle. With `any_key`, stores take what was signed for debugging.
+/// Runs all checks on an APK or a bundle. With `any_key`, stores take what was signed for debugging; with `any_size`, it may
+/// be as large as one that is not optimized as a whole.
 ///
 /// # Errors
 /// Fails if the file is neither, or a tool for the checks is missing.
-pub fn check(path: &Path, store: Store, any_key: bool) -> anyhow::Result<Report> {
+pub fn check(path: &Path, store: Store, any_key: bool, any_size: bool) -> anyhow::Result<Report> {
     let shown = path.display();
     let file = File::open(path)
         .with_context(|| format!("{shown} cannot be read (`cargo xtask apk` says where it puts an APK)"))?;
     let size = file.metadata().with_context(|| format!("{shown} cannot be read"))?.len();
     let zip = ZipArchive::new(file);
-    let zip = zip.with_context(|| format!("{shown} is damaged or no APK: build it anew by `cargo xtask apk`"))?;
+    let zip =
+        zip.with_context(|| format!("{shown} is damaged or no APK: build it anew by `cargo xtask apk`"))?;
     let mut report = Report::default();
     let any_key = any_key || store == Store::None;
     let refuse_form = |report: &mut Report, found: &str, right: &str| {
@@ -110,7 +120,7 @@ pub fn check(path: &Path, store: Store, any_key: bool) -> anyhow::Result<Report>
         refuse_form(&mut report, "APK", "a bundle: cargo xtask apk --release --bundle");
     }
     let manifest = Manifest::read(path)?;
-    let too_large = (size > MAX_SIZE && !manifest.is_debuggable())
+    let too_large = (size > MAX_SIZE && !manifest.is_debuggable() && !any_size)
         .then(|| format!("a release must be under {} MB", MAX_SIZE / 1_000_000));
     report.row("size", format!("{:.2} MB", size as f64 / 1e6), too_large);
     manifest.check(store, &mut report);
@@ -135,7 +145,11 @@ fn tool(name: &str, arguments: &[&str], file: &Path) -> anyhow::Result<Output> {
     let output = Command::new(sdk::build_tool(name)?).args(arguments).arg(file).output();
     let output = output.with_context(|| format!("{name} cannot be started"))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    Ok(Output { succeeded: output.status.success(), text: text(&output.stdout), errors: text(&output.stderr) })
+    Ok(Output {
+        succeeded: output.status.success(),
+        text: text(&output.stdout),
+        errors: text(&output.stderr),
+    })
 }
 
 /// Finds what Android could not map in zipalign's lines `OFFSET NAME (OK)`, which know nothing of pages of 16 KiB, nor that
@@ -171,7 +185,11 @@ fn libraries(apk: &Path, store: Store, report: &mut Report) -> anyhow::Result<()
     for architecture in &ARCHITECTURES[..count] {
         let name = format!("{}/libyoro_android.so", architecture.abi);
         if !libraries.contains_key(&name) {
-            report.row(format!("{} library", architecture.abi), "none", Some(format!("lib/{name} is not in it")));
+            report.row(
+                format!("{} library", architecture.abi),
+                "none",
+                Some(format!("lib/{name} is not in it")),
+            );
         }
     }
     for (name, content) in libraries {
@@ -190,11 +208,13 @@ fn signature(apk: &Path, any_key: bool, report: &mut Report) -> anyhow::Result<(
 
 fn verdict(output: &Output, any_key: bool) -> (String, Option<String>) {
     let scheme = |name: &&&str| {
-        let line = output.text.lines().find(|line| line.starts_with(&format!("Verified using {name} scheme")));
+        let line =
+            output.text.lines().find(|line| line.starts_with(&format!("Verified using {name} scheme")));
         line.is_some_and(|line| line.trim_end().ends_with("true"))
     };
     let schemes: Vec<&str> = ["v2", "v3"].iter().filter(scheme).copied().collect();
-    let signer = output.text.lines().find_map(|line| line.split_once("certificate DN: ")).map(|(_, name)| name);
+    let signer =
+        output.text.lines().find_map(|line| line.split_once("certificate DN: ")).map(|(_, name)| name);
     let problem = if !output.succeeded {
         let error = output.errors.lines().find_map(|line| line.strip_prefix("ERROR: "));
         Some(error.unwrap_or("apksigner does not verify it").to_owned())
@@ -212,7 +232,11 @@ fn jar_signature(bundle: &Path, any_key: bool, report: &mut Report) -> anyhow::R
     let Output { succeeded, text, .. } = tool("keytool", &arguments, bundle)?;
     if !succeeded {
         // It writes its errors to standard output.
-        bail!("the signature of {} cannot be read: {}", bundle.display(), text.lines().next().unwrap_or_default());
+        bail!(
+            "the signature of {} cannot be read: {}",
+            bundle.display(),
+            text.lines().next().unwrap_or_default()
+        );
     }
     match text.lines().find_map(|line| line.strip_prefix("Owner: ")) {
         Some(signer) => report.row("signature", format!("of the jar, by {signer}"), refusal(signer, any_key)),
@@ -237,7 +261,7 @@ mod tests {
     fn what_is_no_apk_is_refused_with_a_remedy() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("some.apk");
-        let refusal = || check(&path, Store::None, false).unwrap_err().to_string();
+        let refusal = || check(&path, Store::None, false, false).unwrap_err().to_string();
         assert!(refusal().contains("some.apk cannot be read"));
         fs::write(&path, "no archive").unwrap();
         assert!(refusal().contains("some.apk is damaged or no APK"));
@@ -251,7 +275,11 @@ mod tests {
     fn pages_and_resources_are_beyond_zipalign() {
         let good = "   49 AndroidManifest.xml (OK - compressed)\n 3444 resources.arsc (OK)\n16384 lib/arm64-v8a/liba.so (OK)\n";
         assert_eq!(misaligned(good, false), None);
-        for (from, to) in [("(OK)\n16384", "(OK)\n4096"), ("arsc (OK)", "arsc (OK - compressed)"), ("arsc (OK)", "arsc (BAD - 2)")] {
+        for (from, to) in [
+            ("(OK)\n16384", "(OK)\n4096"),
+            ("arsc (OK)", "arsc (OK - compressed)"),
+            ("arsc (OK)", "arsc (BAD - 2)"),
+        ] {
             assert!(misaligned(&good.replace(from, to), false).is_some(), "{to}");
         }
         assert_eq!(misaligned(&good.replace("16384", "4096"), true), None);

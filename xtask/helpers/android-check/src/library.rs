@@ -26,9 +26,7 @@ pub fn check(name: &str, content: &[u8], architectures: &[Architecture], report:
         }
         // Libraries of others follow other build rules.
         (Some(_), Ok(elf)) if file == LOADER => lacks(&elf, LOADER_ENTRY).into_iter().collect(),
-        (Some(_), Ok(elf)) => {
-            pages(&elf).into_iter().chain(lacks(&elf, ENTRY)).collect()
-        }
+        (Some(_), Ok(elf)) => pages(&elf).into_iter().chain(lacks(&elf, ENTRY)).collect(),
     };
     let size = content.len() as f64 / 1e6;
     let problem = (!problems.is_empty()).then(|| problems.join("; "));
@@ -48,7 +46,8 @@ pub fn loader_abi(file: &Path) -> anyhow::Result<&'static str> {
         bail!("{shown} is no OpenXR loader: {problem}; {advice}");
     }
     let architecture = ARCHITECTURES.iter().find(|architecture| is_for(&elf, **architecture));
-    let architecture = architecture.with_context(|| format!("{shown} is for none of the APK's processors: {advice}"))?;
+    let architecture =
+        architecture.with_context(|| format!("{shown} is for none of the APK's processors: {advice}"))?;
     Ok(architecture.abi)
 }
 
@@ -57,7 +56,8 @@ fn is_for(elf: &Elf<'_>, architecture: Architecture) -> bool {
 }
 
 fn lacks(elf: &Elf<'_>, entry: &str) -> Option<String> {
-    let is_entry = |symbol: &sym::Sym| symbol.st_shndx != 0 && elf.dynstrtab.get_at(symbol.st_name) == Some(entry);
+    let is_entry =
+        |symbol: &sym::Sym| symbol.st_shndx != 0 && elf.dynstrtab.get_at(symbol.st_name) == Some(entry);
     (!elf.dynsyms.iter().any(|symbol| is_entry(&symbol))).then(|| format!("it does not export {entry}"))
 }
 

@@ -1,6 +1,6 @@
-//! Works with Android's archives and libraries. `check APK STORE [any-key]` checks whether Android will install and start
-//! an APK or a bundle (.aab), and whether a store (`quest`, `play`; `-` for none) takes it, with `any-key` but for the key
-//! that signed it; `bundle APK AAB` converts an APK to a bundle, `loader LIBRARY` prints the architecture of an OpenXR
+//! Works with Android's archives and libraries. `check APK STORE [any-key] [any-size]` checks whether Android will install
+//! and start an APK or a bundle (.aab), and whether a store (`quest`, `play`; `-` for none) takes it, apart from the key that
+//! signed it or its size; `bundle APK AAB` converts an APK to a bundle, `loader LIBRARY` prints the architecture of an OpenXR
 //! loader, and `pack ARCHIVE FOLDER` packs the files of a folder.
 //!
 //! This is a separate program so that only people who build for Android have to compile its dependencies.
@@ -35,14 +35,17 @@ fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
         _ => bail!("no store is called {name}: quest or play"),
     };
     match arguments {
-        ["check", apk, name, key @ ..] if key.is_empty() || *key == ["any-key"] => {
-            let report = check::check(Path::new(apk), store(name)?, !key.is_empty())?;
+        ["check", apk, name, apart_from @ ..] => {
+            let [any_key, any_size] = ["any-key", "any-size"].map(|word| apart_from.contains(&word));
+            let report = check::check(Path::new(apk), store(name)?, any_key, any_size)?;
             return Ok((report.to_string(), report.passed()));
         }
         ["bundle", apk, bundle] => bundle::make(Path::new(apk), Path::new(bundle))?,
         ["loader", library] => return Ok((library::loader_abi(Path::new(library))?.to_owned(), true)),
         ["pack", packed, folder] => bundle::pack(Path::new(folder), Path::new(packed))?,
-        _ => bail!("usage: check APK STORE [any-key], bundle APK AAB, loader LIBRARY, or pack ARCHIVE FOLDER"),
+        _ => bail!(
+            "usage: check APK STORE [any-key] [any-size], bundle APK AAB, loader LIBRARY, or pack ARCHIVE FOLDER"
+        ),
     }
     Ok((String::new(), true))
 }

@@ -89,7 +89,8 @@ fn elements(tree: &str) -> Vec<String> {
     for line in tree.lines().map(str::trim_start) {
         if let Some(element) = line.strip_prefix("E: ") {
             elements.push((element.split(' ').next().unwrap_or_default(), Vec::new()));
-        } else if let (Some(attribute), Some((_, attributes))) = (line.strip_prefix("A: "), elements.last_mut())
+        } else if let (Some(attribute), Some((_, attributes))) =
+            (line.strip_prefix("A: "), elements.last_mut())
             && let Some((name, value)) = attribute.split_once('=')
         {
             // The name is `http://...:name(0x01010003)`, the value `"text" (Raw: "text")`, a number or a resource.
@@ -165,7 +166,8 @@ mod tests {
             \x20       A: http://schemas.android.com/apk/res/android:theme(0x01010000)=@0x7f050000\n\
             \x20       A: http://schemas.android.com/apk/res/android:debuggable(0x0101000f)=true\n\
             \x20       A: http://schemas.android.com/apk/res/android:extractNativeLibs(0x010104ea)=false\n";
-        let expected = ["manifest package=io.github.yoro versionCode=*", "application extractNativeLibs=false theme=@"];
+        let expected =
+            ["manifest package=io.github.yoro versionCode=*", "application extractNativeLibs=false theme=@"];
         assert_eq!(elements(tree), expected);
         let manifest = Manifest { tree: tree.into(), icon: String::new(), title: String::new() };
         assert!(manifest.is_debuggable() && !manifest.unpacks_libraries());
@@ -173,7 +175,10 @@ mod tests {
 
     #[test]
     fn what_is_missing_and_what_is_more_is_seen() {
-        assert!(report(&wanted("common"), Store::Play).passed() && report(&wanted("quest"), Store::Quest).passed());
+        assert!(
+            report(&wanted("common"), Store::Play).passed()
+                && report(&wanted("quest"), Store::Quest).passed()
+        );
         let mut other = wanted("common");
         assert!(!report(&other, Store::Quest).passed());
         let camera = other.iter_mut().find(|element| element.contains("permission.CAMERA")).unwrap();

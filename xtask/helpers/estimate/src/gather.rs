@@ -16,8 +16,8 @@ use yoro::eyes::SynthesisViews;
 use yoro::opengl::{Gather, Options, Outputs};
 use yoro::synthesis::Uniforms;
 use yoro_gl::{Context, Filter, Format, RenderTarget};
-use yoro_render::{NearestDepth, PreparedScene, ViewTargets};
-use yoro_test_support::record::{Command, Draw};
+use yoro_render::{DepthResolve, PreparedScene, ViewTargets};
+use yoro_test_support::record::RecordedPass;
 
 /// The size of a tile in pixels. The first two passes draw one fragment per tile.
 const TILE: [u32; 2] = [16, 8];
@@ -43,11 +43,8 @@ pub struct March {
 
 impl March {
     /// Returns the variant that a recorded frame runs.
-    pub fn of(commands: &[Command]) -> March {
-        let draws = commands.iter().filter_map(|command| match command {
-            Command::Draw(draw @ Draw { pass: MARCH, .. }) => Some(draw),
-            _ => None,
-        });
+    pub fn of(passes: &[RecordedPass]) -> March {
+        let draws = passes.iter().filter(|pass| pass.declaration.name == MARCH).flat_map(|pass| &pass.draws);
         let defines = draws.flat_map(|draw| draw.program.defines.iter().map(|(name, _)| name.as_str()));
         defines.fold(March::default(), |march, name| March {
             bloom: march.bloom || name == "BLOOM",
@@ -228,8 +225,8 @@ impl Counter {
     ///
     /// # Errors
     /// If the driver refuses it.
-    pub fn new(gl: &Rc<Context>, depth: NearestDepth) -> anyhow::Result<Counter> {
-        let options = Options { depth_pairs: depth == NearestDepth::Carried, ..Options::default() };
+    pub fn new(gl: &Rc<Context>, depth: DepthResolve) -> anyhow::Result<Counter> {
+        let options = Options { depth_pairs: depth == DepthResolve::InColor, ..Options::default() };
         Ok(Counter {
             counting: Gather::new(gl, &options, Outputs::default())?,
             targets: ViewTargets::default(),
@@ -282,8 +279,8 @@ impl Counted {
     ///
     /// # Errors
     /// If the table of costs lacks a program.
-    pub fn executed(&self, device: &Device, depth: NearestDepth, variant: March) -> anyhow::Result<Executed> {
-        let costs = Costs::of(device.gpu, depth == NearestDepth::Carried)?;
+    pub fn executed(&self, device: &Device, depth: DepthResolve, variant: March) -> anyhow::Result<Executed> {
+        let costs = Costs::of(device.gpu, depth == DepthResolve::InColor)?;
         let waves = self.waves(wave_size(costs.lanes));
         let march: Vec<Work> = waves.iter().map(|wave| costs.march(*wave, variant)).collect();
         let march = Work {

@@ -23,14 +23,14 @@ use crate::gpus::GPUS;
 use crate::lamps::Lamps;
 use crate::model::{Frame, FrameModel, MULTIVIEW, SIZE};
 use crate::tables::Estimate;
-use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, EyePair, FoveationLevel, Gaze, GuardBand};
+use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, EyePair, FoveationLevel, Gaze};
 use yoro_assets::ShadingStyle;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Capabilities, Context};
 use yoro_render::stereo::{FrameTargets, Method, StereoImages, StereoOptions, StereoSession};
 use yoro_render::{DepthReader, PreparedScene, RenderSettings, Selection, ViewTargets};
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
-use yoro_test_support::record::{Command, Recorder};
+use yoro_test_support::record::{RecordedPass, Recorder};
 use yoro_viewer::render_settings;
 
 /// Slots and bytes of whole stereo frames, by two renders, multiview and synthesis
@@ -53,14 +53,13 @@ struct Args {
 }
 
 /// Methods whose frames are recorded, by their names in the tables.
-const METHODS: [(&str, Method); 3] = [
-    ("conventional", Method::Conventional),
-    (MULTIVIEW, Method::Instanced),
-    ("yoro-gather", Method::Synthesized),
+const METHODS: [(&str, Method, FoveationLevel); 5] = [
+    ("conventional", Method::Conventional, FoveationLevel::Off),
+    (MULTIVIEW, Method::Instanced, FoveationLevel::Off),
+    ("yoro-gather", Method::Synthesized, FoveationLevel::Off),
+    ("conventional-medium", Method::Conventional, FoveationLevel::Medium),
+    ("yoro-medium", Method::Synthesized, FoveationLevel::Medium),
 ];
-/// Methods that are recorded with two levels of foveation.
-const FOVEATED: [(&str, Method); 2] =
-    [("conventional-medium", Method::Conventional), ("yoro-medium", Method::Synthesized)];
 /// The passes of `gather`.
 const PASSES: [&str; 3] = ["gather tiles", "gather spans", "gather march"];
 
@@ -82,7 +81,7 @@ fn main() -> anyhow::Result<()> {
         };
         let headless = Headless::open_limited(Backend::Osmesa, limit)?;
         for (label, bloom) in [("bloom", true), ("no bloom", false)] {
-            estimates.extend(Estimator::new(headless.gl(), &args, builtin.name, bloom)?.estimates(&args, label)?);
+            estimates.extend(Estimator::new(headless.gl(), builtin.name, bloom)?.estimates(&args, label)?);
         }
     }
     ensure!(!estimates.is_empty(), "no built-in scene is called so");
@@ -104,7 +103,7 @@ struct Estimator {
 }
 
 impl Estimator {
-    fn new(gl: &Rc<Context>, _: &Args, name: &'static str, bloom: bool) -> anyhow::Result<Estimator> {
+    fn new(gl: &Rc<Context>, name: &'static str, bloom: bool) -> anyhow::Result<Estimator> {
         // Phones render with the viewer's settings.
         let settings = RenderSettings { bloom, ..render_settings(&Default::default(), None) };
         let recorder = Recorder::new(gl);
@@ -141,29 +140,21 @@ impl Estimator {
     fn frames(&mut self, pair: &EyePair) -> anyhow::Result<Vec<(&'static str, Frame)>> {
         let mut lamps = self.lamps(pair)?;
         let mut frames = Vec::new();
-        let whole = [(self.counter.count(&mut self.scene, reversed(pair).synthesis_views(GuardBand::Distance(1.0))?)?, 1.0)];
-        for (name, method) in METHODS {
-            let commands = self.record(method, pair, FoveationLevel::Off)?;
-            let counted = if method == Method::Synthesized { &whole[..] } else { &[] };
+        for (name, method, level) in METHODS {
+            let passes = self.record(method, pair, level)?;
+            let counted = if method == Method::Synthesized { self.count(pair, level)? } else { Vec::new() };
             let mut frame = match name {
-                MULTIVIEW => self.model.multiview(&commands, pair.size, &mut lamps)?,
-                _ => self.model.frame(&commands, pair.size, &mut lamps, laws(counted))?,
+                MULTIVIEW => self.model.multiview(&passes, pair.size, &mut lamps)?,
+                _ => self.model.frame(&passes, pair.size, &mut lamps, laws(&counted))?,
             };
-            self.add_synthesis(&mut frame, &commands, counted)?;
-            frames.push((name, frame));
-        }
-        for (name, method) in FOVEATED {
-            let commands = self.record(method, pair, FoveationLevel::Medium)?;
-            let counted = if method == Method::Synthesized { self.levels(pair)? } else { Vec::new() };
-            let mut frame = self.model.frame(&commands, pair.size, &mut lamps, laws(&counted))?;
-            self.add_synthesis(&mut frame, &commands, &counted)?;
+            self.add_synthesis(&mut frame, &passes, &counted)?;
             frames.push((name, frame));
         }
         Ok(frames)
     }
 
-    /// Returns the commands of a method's first frame.
-    fn record(&mut self, method: Method, pair: &EyePair, level: FoveationLevel) -> anyhow::Result<Vec<Command>> {
+    /// Returns the passes of a method's first frame.
+    fn record(&mut self, method: Method, pair: &EyePair, level: FoveationLevel) -> anyhow::Result<Vec<RecordedPass>> {
         let options = StereoOptions { policy: None, ..StereoOptions::default() };
         let mut session = StereoSession::new(&self.gl, method.into(), &self.settings, &options)?;
         let views = pair.stereo_views(level.foveation().as_ref(), Gaze::Axes(pair.axes()))?;
@@ -174,16 +165,14 @@ impl Estimator {
         Ok(self.recorder.take())
     }
 
-    /// Counts the synthesis of each level, with its share of the eye's pixels.
-    fn levels(&mut self, pair: &EyePair) -> anyhow::Result<Vec<(Counted, f64)>> {
-        let level = FoveationLevel::Medium.foveation();
-        let guard = StereoOptions::default().guard_band;
+    /// Counts the synthesis of each layer, with its share of the eye's pixels.
+    fn count(&mut self, pair: &EyePair, level: FoveationLevel) -> anyhow::Result<Vec<(Counted, f64)>> {
         let pair = reversed(pair);
-        let views = pair.stereo_views(level.as_ref(), Gaze::Axes(pair.axes()))?;
+        let views = pair.stereo_views(level.foveation().as_ref(), Gaze::Axes(pair.axes()))?;
         let pixels = |size: [u32; 2]| f64::from(size[0]) * f64::from(size[1]);
         let mut counted = Vec::new();
         for layer in views.layers() {
-            let views = layer.synthesis_views(guard)?;
+            let views = layer.synthesis_views(StereoOptions::default().guard_band)?;
             let share = pixels(views.target.size) / pixels(pair.size);
             counted.push((self.counter.count(&mut self.scene, views)?, share));
         }
@@ -194,15 +183,14 @@ impl Estimator {
     fn add_synthesis(
         &self,
         frame: &mut Frame,
-        commands: &[Command],
+        passes: &[RecordedPass],
         counted: &[(Counted, f64)],
     ) -> anyhow::Result<()> {
         let depth = self.scene.renderer.nearest_depth();
         for gpu in GPUS {
             for (level, share) in counted {
-                let Executed { slots, fetches, bytes } = level.executed(&gpu, depth, March::of(commands))?;
-                let passes = PASSES.into_iter().zip(slots);
-                let alone = passes.map(|(pass, slots)| (format!("slots/{}/{pass}", gpu.gpu), slots));
+                let Executed { slots, fetches, bytes } = level.executed(&gpu, depth, March::of(passes))?;
+                let alone = PASSES.into_iter().zip(slots).map(|(pass, slots)| (format!("slots/{}/{pass}", gpu.gpu), slots));
                 let rest = [("fetches", fetches), ("traffic", bytes)]
                     .map(|(name, value)| (format!("{}{name}/{}", tables::SYNTHESIS_ALONE, gpu.gpu), value));
                 for (metric, value) in alone.chain(rest) {

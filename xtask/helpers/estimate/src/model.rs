@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use crate::costs::Costs;
 use crate::gpus::{Device, GPUS};
 use crate::lamps::Lamps;
-use crate::traffic::{Assumed, fragments, pieces};
+use crate::traffic::{Assumed, fragments, samples, vertex_bytes};
 use yoro_gl::{ProgramRecipe, Shape};
-use yoro_test_support::record::{Command, Draw};
+use yoro_test_support::record::RecordedPass;
 
 /// The prefix of the names of synthesis passes. Their execution is counted by [`Counter`](crate::gather::Counter).
 pub const SYNTHESIS: &str = "gather ";
@@ -55,7 +55,7 @@ impl FrameModel {
     /// If the table lacks a shader.
     pub fn frame(
         &self,
-        commands: &[Command],
+        passes: &[RecordedPass],
         size: [u32; 2],
         lamps: &mut Lamps,
         laws: f64,
@@ -69,23 +69,25 @@ impl FrameModel {
             (BYTES_16, Assumed { depth_in_16_bits: true, ..tiles }),
             (BYTES_BLIT, Assumed { averages_in_memory: true, ..tiles }),
         ] {
-            for piece in pieces(commands, &assumed) {
-                add(format!("{prefix}{}", piece.passes.join(", ")), piece.bytes());
-                add(format!("{prefix}{VERTICES}"), piece.vertex_bytes);
+            for pass in passes {
+                add(format!("{prefix}{}", pass.declaration.name), assumed.bytes(pass));
+                add(format!("{prefix}{VERTICES}"), vertex_bytes(pass));
             }
         }
-        for command in commands {
-            let Command::Draw(draw) = command else { continue };
-            let count = shaded(draw);
-            add(format!("fragments/{}", draw.pass), count);
-            if draw.pass.starts_with(SYNTHESIS) {
+        let draws = passes.iter().flat_map(|pass| pass.draws.iter().map(move |draw| (pass, draw)));
+        for (pass, draw) in draws {
+            let name = pass.declaration.name;
+            let edges = samples(pass) > 1 && draw.shape != Shape::Screen;
+            let count = fragments(pass, draw) * if edges { EDGE_FRAGMENTS } else { 1.0 };
+            add(format!("fragments/{name}"), count);
+            if name.starts_with(SYNTHESIS) {
                 continue;
             }
             for (gpu, costs) in &self.costs {
                 let of = |pass: &str| format!("slots/{}/{pass}", gpu.gpu);
                 let fragment = costs.fragment(&draw.program)?;
                 let lights = if fragment.lamp > 0.0 { lamps.of_wave(fragment.lanes) } else { 0.0 };
-                add(of(draw.pass), count * (fragment.slots + lights * fragment.lamp));
+                add(of(name), count * (fragment.slots + lights * fragment.lamp));
                 if let Shape::Mesh { vertices, .. } = draw.shape {
                     add(of(VERTICES), vertices as f64 * costs.vertex(&draw.program));
                 }
@@ -101,12 +103,12 @@ impl FrameModel {
     /// Those of [`FrameModel::frame`].
     pub fn multiview(
         &self,
-        commands: &[Command],
+        passes: &[RecordedPass],
         size: [u32; 2],
         lamps: &mut Lamps,
     ) -> anyhow::Result<Frame> {
-        let commands: Vec<Command> = commands.iter().map(with_layers).collect();
-        let mut frame = self.frame(&commands, size, lamps, 0.0)?;
+        let passes: Vec<RecordedPass> = passes.iter().map(with_layers).collect();
+        let mut frame = self.frame(&passes, size, lamps, 0.0)?;
         for (gpu, _) in &self.costs {
             let twice = frame.get(&format!("slots/{}/{VERTICES}", gpu.gpu)).copied().unwrap_or(0.0);
             frame.insert(format!("slots/{}/{VERTICES_ONCE}", gpu.gpu), 0.5 * twice);
@@ -115,66 +117,41 @@ impl FrameModel {
     }
 }
 
-/// Returns the number of fragments that a draw call shades.
-fn shaded(draw: &Draw) -> f64 {
-    let samples =
-        draw.target.as_ref().and_then(|target| target.color.first()).map_or(1, |image| image.samples);
-    let edges = samples > 1 && draw.shape != Shape::Screen;
-    fragments(draw) * if edges { EDGE_FRAGMENTS } else { 1.0 }
-}
-
-/// Returns the draw call as multiview would make it, with the programs that draw into layers and read them.
-fn with_layers(command: &Command) -> Command {
-    let Command::Draw(draw) = command else { return command.clone() };
+/// Returns a pass as multiview would draw it, with the programs that draw into layers and read them.
+fn with_layers(pass: &RecordedPass) -> RecordedPass {
     let rename = |name: &str| match name {
         "CLIP_DISTANCE" | "SEAM_DISCARD" => "MULTIVIEW".to_owned(),
         other => other.to_owned(),
     };
-    let defines = draw.program.defines.iter().map(|(name, value)| (rename(name), value.clone())).collect();
-    let program = ProgramRecipe { files: draw.program.files.clone(), defines };
-    Command::Draw(Draw { program: program.into(), ..draw.clone() })
+    let mut pass = pass.clone();
+    for draw in &mut pass.draws {
+        let ProgramRecipe { files, defines } = &*draw.program;
+        let defines = defines.iter().map(|(name, value)| (rename(name), value.clone())).collect();
+        draw.program = ProgramRecipe { files: files.clone(), defines }.into();
+    }
+    pass
 }
 
 #[cfg(test)]
 mod tests {
-    use std::rc::Rc;
-
     use super::*;
+    use crate::traffic::tests::{MESH, pass};
     use yoro::eyes::{EyeOptions, Pose};
-    use yoro_gl::{Attachments, Format, Image};
 
-    /// A mesh of 20 vertices without maps, with 120 fragments on 100 pixels, and a screen pass.
+    /// A mesh of 4 vertices without maps, with 30 fragments on 40 pixels, and two screen passes.
     #[test]
     fn slots_are_fragments_times_what_the_compiler_says() {
-        let size = [10, 10];
-        let image = Image { format: Format::Rgba8, size, samples: 1 };
-        let draw = |pass, file: &str, shape, samples_passed| {
-            Command::Draw(Draw {
-                pass,
-                program: ProgramRecipe { files: vec![file.into()], defines: Vec::new() }.into(),
-                target: Some(Rc::new(Attachments { color: vec![image], depth: None })),
-                textures: Vec::new(),
-                area: size,
-                view: size,
-                shape,
-                blends: false,
-                uses_depth: false,
-                writes_depth: false,
-                masks_samples: false,
-                samples_passed,
-            })
-        };
-        let mesh = Shape::Mesh { indices: 30, vertices: 20, vertex_bytes: 32 };
-        let commands = [
-            draw("surfaces", "render/shadow.frag", mesh, Some(120)),
-            draw("bloom", "render/bloom_up.frag", Shape::Screen, None),
-            draw("gather march", "synthesis/gather/march.frag", Shape::Screen, None),
+        let size = [10, 4];
+        let passes = [
+            pass("surfaces", "render/shadow.frag", MESH, &[]),
+            pass("bloom", "render/bloom_up.frag", Shape::Screen, &[]),
+            pass("gather march", "synthesis/gather/march.frag", Shape::Screen, &[]),
         ];
         let pair = EyeOptions { size, ..EyeOptions::default() }.pair(Pose::IDENTITY);
-        let mut lamps = Lamps::new(&pair.view(pair.dominant), &[pair.depth.clear_value(); 100], &[]);
+        let mut lamps = Lamps::new(&pair.view(pair.dominant), &[pair.depth.clear_value(); 40], &[]);
         let model = FrameModel::new().unwrap();
-        let frame = model.frame(&commands, size, &mut lamps, 0.0).unwrap();
-        let told = |file: &str, stage: &str, column: usize| {
+        let frame = model.frame(&passes, size, &mut lamps, 0.0).unwrap();
+        let in_table = |file: &str, stage: &str, column: usize| {
             let table = include_str!("../shader-cost.csv");
             let line = table.lines().find(|line| line.starts_with(&format!("a740,{file},{stage},"))).unwrap();
             line.split(',').nth(column).unwrap().parse::<f64>().unwrap()
@@ -183,16 +160,16 @@ mod tests {
             let value = frame[metric];
             assert!((value - expected).abs() < 1e-9 * expected, "{metric}: {value}, not {expected}");
         };
-        close("slots/a740/surfaces", 1.2 * told("render/shadow.frag", "fragment", 4));
-        close("slots/a740/vertices", 0.2 * told("render/shadow.frag", "vertex", 3));
-        close("slots/a740/bloom", told("render/bloom_up.frag", "fragment", 4));
-        close("fragments/surfaces", 1.2);
-        close("bytes/surfaces", 8.0);
-        close("bytes/vertices", (20.0 * 32.0 + 30.0 * 4.0) / 100.0);
+        close("slots/a740/surfaces", 0.75 * in_table("render/shadow.frag", "fragment", 4));
+        close("slots/a740/vertices", 0.1 * in_table("render/shadow.frag", "vertex", 3));
+        close("slots/a740/bloom", in_table("render/bloom_up.frag", "fragment", 4));
+        close("fragments/surfaces", 0.75);
+        close("bytes/surfaces", 4.0);
+        close("bytes/vertices", (4.0 * 32.0 + 6.0 * 4.0) / 40.0);
         // The execution of the synthesis is counted elsewhere.
         assert!(!frame.contains_key("slots/a740/gather march") && frame.contains_key("bytes/gather march"));
         // By multiview, each vertex is shaded twice, or once for both eyes.
-        let both = model.multiview(&commands, size, &mut lamps).unwrap();
+        let both = model.multiview(&passes, size, &mut lamps).unwrap();
         assert_eq!(both["slots/a740/vertices once"], 0.5 * both["slots/a740/vertices"]);
     }
 }

@@ -3,12 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
-use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use anyhow::Context as _;
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
-use xtask::folders::{copy, root, write};
+use xtask::folders::{copy, read_text, root, write};
 
 /// The folder of the guides in the site.
 pub const FOLDER: &str = "guides";
@@ -39,8 +37,7 @@ pub fn write_all(site: &Path) -> anyhow::Result<()> {
             copy(&source, &out.join(&document))?;
             continue;
         }
-        let text =
-            fs::read_to_string(&source).with_context(|| format!("{} cannot be read", source.display()))?;
+        let text = read_text(&source)?;
         let mut linked = Vec::new();
         let guide = guide(&text, |target| {
             let (path, anchor) = target.split_once('#').map_or((target, ""), |(path, anchor)| (path, anchor));

@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use xtask::folders::root;
+use xtask::folders::{files, read, root};
 
 use crate::licences::chosen;
 use crate::packages::{self, Package};
@@ -23,7 +22,7 @@ const MARKS: [(&str, &str); 7] = [
 ];
 const APACHE: &str = "Apache-2.0";
 /// Folders are searched for licences down to this depth.
-const DEPTH: usize = 2;
+const MAX_DEPTH: usize = 2;
 /// What else may be in a file: a package that contains it, its name, and its licence.
 const MORE: [(&str, &str, &str); 1] =
     [("yoro-lenses", "The font B612 Mono (SIL Open Font License 1.1)", "app/vr/lenses/fonts/OFL.txt")];
@@ -41,10 +40,8 @@ pub fn text(package: &str, target: &str, features: &[&str]) -> anyhow::Result<St
     }
     for (user, title, file) in MORE {
         if contained.iter().any(|(name, _)| name == user) {
-            let path = root().join(file);
-            let text =
-                fs::read_to_string(&path).with_context(|| format!("{} cannot be read", path.display()))?;
-            notices.texts.entry(clean(&text)).or_default().push(title.to_owned());
+            let text = text_of(&root().join(file))?;
+            notices.texts.entry(text).or_default().push(title.to_owned());
         }
     }
     notices.write()
@@ -61,13 +58,13 @@ impl Notices {
     fn add(&mut self, package: &Package) -> anyhow::Result<()> {
         let Package { name, version, folder, .. } = package;
         let licences: Vec<String> = chosen(package)?.iter().map(ToString::to_string).collect();
-        let files = files(folder, 0);
+        let files = licence_files(folder);
         let title = format!("{name} {version} ({})", licences.join(" and "));
         if licences.len() == 1 && licences[0].starts_with(APACHE) {
             self.apache.push(format!("{name} {version}"));
             // Section 4d: the texts of NOTICE files have to be passed on.
             for file in files.iter().filter(|file| is_called(file, "NOTICE")) {
-                self.texts.entry(clean(&read(file)?)).or_default().push(format!("{title}, its NOTICE"));
+                self.texts.entry(text_of(file)?).or_default().push(format!("{title}, its NOTICE"));
             }
             return Ok(());
         }
@@ -79,7 +76,7 @@ impl Notices {
             let mark = MARKS.iter().find(|(known, _)| known == licence).map_or("", |(_, mark)| mark);
             let mut own = Vec::new();
             for file in files.iter().filter(|_| !mark.is_empty()) {
-                let text = clean(&read(file)?);
+                let text = text_of(file)?;
                 if one_line(&text).contains(mark) {
                     own.push(text);
                 }
@@ -112,7 +109,7 @@ impl Notices {
             let _ = writeln!(out, "  {name}");
         }
         // Our own copy, whose lines are not as long as paragraphs.
-        let _ = write!(out, "\n{}\n", clean(&read(&root().join("LICENSE-APACHE"))?));
+        let _ = write!(out, "\n{}\n", text_of(&root().join("LICENSE-APACHE"))?);
         let mut texts: Vec<(Vec<String>, String)> =
             self.texts.into_iter().map(|(text, titles)| (titles, text)).collect();
         texts.sort();
@@ -140,29 +137,19 @@ fn standard(package: &Package, licence: &str) -> anyhow::Result<String> {
 }
 
 /// Returns the files that are called like licences, in a folder and those in it.
-fn files(folder: &Path, depth: usize) -> Vec<PathBuf> {
-    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    paths.sort();
-    let names = ["LICEN", "COPYING", "NOTICE"];
-    let mut found = Vec::new();
-    for path in paths {
-        if path.is_dir() && depth < DEPTH {
-            found.extend(files(&path, depth + 1));
-        } else if path.is_file() && names.iter().any(|name| is_called(&path, name)) {
-            found.push(path);
-        }
-    }
-    found
+fn licence_files(folder: &Path) -> Vec<PathBuf> {
+    let is_near = |name: &str| name.matches('/').count() <= MAX_DEPTH;
+    let found = files(folder).unwrap_or_default().into_iter();
+    let paths = found.filter(|(name, _)| is_near(name)).map(|(_, path)| path);
+    paths.filter(|path| ["LICEN", "COPYING", "NOTICE"].iter().any(|name| is_called(path, name))).collect()
 }
 
 fn is_called(file: &Path, beginning: &str) -> bool {
     file.file_name().is_some_and(|name| name.to_string_lossy().to_uppercase().starts_with(beginning))
 }
 
-fn read(file: &Path) -> anyhow::Result<String> {
-    let bytes = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+fn text_of(file: &Path) -> anyhow::Result<String> {
+    Ok(clean(&String::from_utf8_lossy(&read(file)?)))
 }
 
 /// Removes spaces at the ends of lines, and empty lines at the ends of the text.
@@ -184,8 +171,8 @@ mod tests {
     fn a_package_keeps_its_own_text_and_one_without_gets_its_authors() {
         let folder = tempfile::tempdir().unwrap();
         let own = "Copyright (c) Ada\n\nPermission is hereby granted,  free\nof charge, to all.  \n";
-        fs::write(folder.path().join("LICENSE-MIT"), own).unwrap();
-        fs::write(folder.path().join("NOTICE"), "Thanks to Grace.").unwrap();
+        std::fs::write(folder.path().join("LICENSE-MIT"), own).unwrap();
+        std::fs::write(folder.path().join("NOTICE"), "Thanks to Grace.").unwrap();
         let mut notices = Notices::default();
         let with = |licence: &str| Package { folder: folder.path().to_owned(), ..package(licence) };
         notices.add(&with("MIT")).unwrap();
@@ -196,10 +183,6 @@ mod tests {
         assert!(text.contains("some 1.0.0 (MIT)\n\nCopyright (c) Ada\n"), "{text}");
         assert!(text.contains("other 1.0.0 (MIT)\n") && text.contains("Copyright (c) Edsger\n"), "{text}");
         assert!(text.contains("Apache License 2.0:\n\n  some 1.0.0\n") && text.contains("Thanks to Grace."));
-        assert!(notices_of("GPL-3.0-only").is_err());
-    }
-
-    fn notices_of(licence: &str) -> anyhow::Result<()> {
-        Notices::default().add(&package(licence))
+        assert!(Notices::default().add(&package("GPL-3.0-only")).is_err());
     }
 }

@@ -26,28 +26,12 @@ use self::motion::{Carried, Standing, place_carried};
 use self::primitive::transform;
 use self::reader::Reader;
 use super::error::{MAX_ELEMENTS, SceneError};
+use super::load::Loaded;
 use super::model::{Material, Model, PointLight, Sky, Viewpoint};
 use super::motion::{Motion, MovingLight};
 use super::palette::{paint, palette};
 use super::repair::{RawMesh, assemble};
 use super::textures::{Built, TextureSet, to_srgb};
-
-/// The contents of a glTF file. Sky and lights are present only if the file has some.
-#[derive(Debug)]
-pub struct GltfScene {
-    /// Triangles, materials and pictures.
-    pub model: Model,
-    /// The cameras of the scene.
-    pub cameras: Vec<Viewpoint>,
-    /// Its first directional light, as the sun.
-    pub sky: Option<Sky>,
-    /// Its point and spot lights, without their cones.
-    pub lights: Option<Vec<PointLight>>,
-    /// What moves. Everything else is in its state at time 0.
-    pub motion: Motion,
-    /// What was subtracted from all positions, in the file's units: not zero if the model is far from its origin.
-    pub subtracted: DVec3,
-}
 
 /// Reads a `.gltf` or `.glb` file, with nodes, skins and morph targets in their state at the start of the animations.
 ///
@@ -64,7 +48,7 @@ pub struct GltfScene {
 ///
 /// # Errors
 /// [`SceneError`] for files that are damaged, incomplete or need extensions that change geometry (Draco, meshopt).
-pub(crate) fn load_gltf(path: &Path, animation: Option<&str>) -> Result<GltfScene, SceneError> {
+pub(crate) fn load_gltf(path: &Path, animation: Option<&str>) -> Result<Loaded, SceneError> {
     let (document, blob) = parse(path, &read_file(path)?)?;
     check_extensions(path, &document)?;
     check(path, &document)?;
@@ -107,14 +91,14 @@ pub(crate) fn load_gltf(path: &Path, animation: Option<&str>) -> Result<GltfScen
         materials.pop();
     }
     let (mut model, placed) =
-        assemble(path, meshes, materials).map_err(|error| match (error, compression(&document)) {
-            (SceneError::Empty { path }, Some(e)) => SceneError::unusable(
-                &path,
+        assemble(path, meshes, materials).map_err(|error| match compression(&document) {
+            Some(extension) => SceneError::unusable(
+                path,
                 format!(
-                    "its triangles are compressed by {e}, which is not supported: export the model without it"
+                    "its triangles are compressed by {extension}, which is not supported: export the model without it"
                 ),
             ),
-            (error, _) => error,
+            None => error,
         })?;
     model.textures = built.images;
     place_carried(&carried, placed, &mut motion, &mut model);
@@ -128,7 +112,7 @@ pub(crate) fn load_gltf(path: &Path, animation: Option<&str>) -> Result<GltfScen
     if motion.is_still() {
         motion = Motion::default();
     }
-    Ok(GltfScene { model, cameras, sky, lights, motion, subtracted })
+    Ok(Loaded { model, cameras, sky, lights, motion, subtracted })
 }
 
 /// A point or spot light.
@@ -155,7 +139,7 @@ struct Nodes {
     motion: Motion,
     /// What carries meshes, by [`RawMesh::moving`].
     carried: Vec<Carried>,
-    /// See [`GltfScene::subtracted`].
+    /// See [`Loaded::subtracted`].
     subtracted: DVec3,
 }
 

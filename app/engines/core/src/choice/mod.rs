@@ -372,7 +372,8 @@ impl Chooser {
     fn collect(&mut self, now_ns: i64) {
         let Phase::Collecting { left, begin_ns } = &mut self.phase else { return };
         let begin_ns = *begin_ns;
-        let is_missing = |path: StereoPath| self.costs[path.index()].len() < self.intervals[path.index()].len();
+        let is_missing =
+            |path: StereoPath| self.costs[path.index()].len() < self.intervals[path.index()].len();
         if *left > 0 && StereoPath::BOTH.into_iter().any(is_missing) {
             *left -= 1;
             return;

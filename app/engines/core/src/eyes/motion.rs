@@ -117,7 +117,11 @@ impl SynthesisViews {
     ///
     /// # Errors
     /// Those of [`SynthesisViews::motion`].
-    pub fn own_motion(&self, previous: &SynthesisViews, vectors: VectorSpace) -> Result<MotionWarp, EyesError> {
+    pub fn own_motion(
+        &self,
+        previous: &SynthesisViews,
+        vectors: VectorSpace,
+    ) -> Result<MotionWarp, EyesError> {
         self.motion_of(&self.own_warp(), previous, &previous.own_warp(), vectors)
     }
 

@@ -119,8 +119,12 @@ impl EyePair {
         Eye::BOTH.iter().all(|eye| {
             let [own, other] = [self, other].map(|pair| pair.frusta[eye.index()]);
             let pixel = (own.width() / self.size[0] as f32).min(own.height() / self.size[1] as f32);
-            let sides =
-                [own.left - other.left, own.right - other.right, own.bottom - other.bottom, own.top - other.top];
+            let sides = [
+                own.left - other.left,
+                own.right - other.right,
+                own.bottom - other.bottom,
+                own.top - other.top,
+            ];
             sides.iter().all(|side| side.abs() < 0.01 * pixel)
         })
     }

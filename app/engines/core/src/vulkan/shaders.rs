@@ -1,4 +1,4 @@
-//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain shaders`.
+//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain renew`.
 
 use crate::synthesis::backend::{PerKind, WarpKind};
 
@@ -77,7 +77,7 @@ mod tests {
             folder: Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv"),
             ending: "spv",
             compiler: compiled::glslang(&ARGUMENTS),
-            command: "cargo xtask maintain shaders",
+            command: "cargo xtask maintain renew",
             compile: |source: &Source| compiled::spirv(source, &ARGUMENTS),
         };
         let sources = MODULES.each_ref().map(source);

@@ -87,7 +87,7 @@ fn wgsl(source: &Source) -> anyhow::Result<Vec<u8>> {
     let info = validated(&module).with_context(|| source.name)?;
     let flags = naga::back::wgsl::WriterFlags::empty();
     let text = naga::back::wgsl::write_string(&module, &info, flags)?;
-    Ok(format!("// Made of yoro's GLSL by `cargo xtask maintain shaders`.\n{text}").into_bytes())
+    Ok(format!("// Made of yoro's GLSL by `cargo xtask maintain renew`.\n{text}").into_bytes())
 }
 
 /// Returns the workspace's version of naga, or `None` without a lock file.
@@ -104,7 +104,7 @@ fn modules_are_compiled_from_the_present_shaders() {
         folder: folder().to_owned(),
         ending: "wgsl",
         compiler: compiler.map(|(glslang, naga)| format!("{glslang}, naga {naga}")),
-        command: "cargo xtask maintain shaders",
+        command: "cargo xtask maintain renew",
         compile: wgsl,
     };
     let sources: Vec<Source> = all_modules().iter().map(source).collect();

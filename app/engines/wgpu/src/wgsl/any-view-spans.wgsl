@@ -1,4 +1,4 @@
-// Made of yoro's GLSL by `cargo xtask maintain shaders`.
+// Made of yoro's GLSL by `cargo xtask maintain renew`.
 struct AnyView {
     source_size: vec2<i32>,
     target_origin: vec2<i32>,

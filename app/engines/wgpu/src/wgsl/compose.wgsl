@@ -1,4 +1,4 @@
-// Made of yoro's GLSL by `cargo xtask maintain shaders`.
+// Made of yoro's GLSL by `cargo xtask maintain renew`.
 struct Levels {
     eye_place: vec4<f32>,
     wide_place: vec4<f32>,

@@ -1,4 +1,4 @@
-// Made of yoro's GLSL by `cargo xtask maintain shaders`.
+// Made of yoro's GLSL by `cargo xtask maintain renew`.
 struct Edge {
     x: f32,
     depth: f32,

@@ -1,4 +1,4 @@
-// Made of yoro's GLSL by `cargo xtask maintain shaders`.
+// Made of yoro's GLSL by `cargo xtask maintain renew`.
 var<private> gl_FragCoord_1: vec4<f32>;
 @group(0) @binding(0) 
 var sample_depths_texture: texture_multisampled_2d<f32>;

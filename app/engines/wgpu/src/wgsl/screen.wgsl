@@ -1,4 +1,4 @@
-// Made of yoro's GLSL by `cargo xtask maintain shaders`.
+// Made of yoro's GLSL by `cargo xtask maintain renew`.
 struct gl_PerVertex {
     @builtin(position) gl_Position: vec4<f32>,
     gl_PointSize: f32,

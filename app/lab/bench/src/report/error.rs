@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use yoro_files::FileError;
 use yoro_media::PictureError;
 use yoro_metrics::MetricsError;
 
@@ -10,18 +9,9 @@ use yoro_metrics::MetricsError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// A file could not be written.
+    /// The page could not be made or written.
     #[error(transparent)]
-    File(#[from] FileError),
-    /// A picture could not be encoded.
-    #[error("cannot encode a picture of the report: {0}")]
-    Picture(#[from] image::ImageError),
-    /// A page or a figure could not be made.
-    #[error(transparent)]
-    Figures(#[from] yoro_report::ReportError),
-    /// A figure could not be drawn.
-    #[error(transparent)]
-    Plot(#[from] yoro_report::plot::PlotError),
+    Page(#[from] yoro_report::ReportError),
     /// A file of results holds no finished round.
     #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
     Empty {

@@ -1,10 +1,9 @@
-//! The reports of `yoro run` and `yoro bench`: self-contained pages, JSON, Markdown tables and a table for the
-//! terminal. This file has the report of `run`; [`mod@bench`] has that of `bench`.
+//! What the reports of `yoro run` and `yoro bench` consist of. This file has the report of `run`; [`mod@bench`] has that of
+//! `bench`.
 //!
 //! Every figure is shown beside its baseline: quality beside "same image to both eyes" (which costs nothing), cost
 //! beside two full renders. The paper's figures are marked as the paper's.
 
-pub mod bench;
 mod error;
 mod page;
 mod run;
@@ -15,7 +14,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use yoro_report::ReportFiles;
-use yoro_report::paper::{self, PaperScene};
+use yoro_report::paper::{PAPER, PaperScene};
 
 pub use error::ReportError;
 pub use run::{
@@ -30,7 +29,7 @@ impl RunReport {
         struct Json<'a> {
             quality_method: &'static str,
             means: Vec<MethodMean>,
-            paper_average: PaperScene,
+            paper_average: &'static PaperScene,
             rows: Vec<Row>,
             #[serde(flatten)]
             report: &'a RunReport,
@@ -38,20 +37,10 @@ impl RunReport {
         Ok(serde_json::to_string_pretty(&Json {
             quality_method: QUALITY_METHOD,
             means: self.means(),
-            paper_average: paper::AVERAGE,
+            paper_average: &PAPER.average,
             rows: self.rows(),
             report: self,
         })?)
-    }
-
-    /// Returns the self-contained page.
-    pub fn to_html(&self) -> Result<String, ReportError> {
-        page::render(self)
-    }
-
-    /// Returns a table of all rows and means, for a README.
-    pub fn to_markdown(&self) -> String {
-        table::markdown(self)
     }
 
     /// Returns a short table for a terminal.
@@ -61,14 +50,12 @@ impl RunReport {
 
     /// Returns the files that [`RunReport::write`] writes into `folder`.
     pub fn files(folder: &Path) -> ReportFiles {
-        ReportFiles::of(folder, "report")
+        ReportFiles::of(folder, "report", true)
     }
 
     /// Writes the page, the table and all figures into `folder`.
     pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
-        let files = RunReport::files(folder);
-        files.write(&self.to_html()?, &self.to_markdown(), &self.to_json()?)?;
-        Ok(files)
+        Ok(page::report(self).write(folder, "report", Some(&self.to_json()?))?)
     }
 }
 

@@ -160,7 +160,7 @@ pub struct Row {
     /// `frame_ms / conventional_ms`.
     pub cost_ratio: f64,
     /// The paper's figures for the scene that this one corresponds to.
-    pub paper: Option<PaperScene>,
+    pub paper: Option<&'static PaperScene>,
 }
 
 /// The figures of one method over all scenes.
@@ -221,7 +221,7 @@ impl SceneReport {
                 frame_ms,
                 conventional_ms,
                 cost_ratio: frame_ms / conventional_ms,
-                paper: paper::find(&self.stands_for).copied(),
+                paper: paper::find(&self.stands_for),
             })
         };
         self.methods.iter().filter_map(row).collect()

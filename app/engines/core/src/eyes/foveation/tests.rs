@@ -140,7 +140,8 @@ fn a_gaze_that_moves_changes_no_size() {
             };
             let sizes = |levels: &StereoViews| {
                 let inset = levels.inset.unwrap();
-                let sources = [levels.wide, inset].map(|layer| layer.synthesis_views(GUARD).unwrap().source.size);
+                let sources =
+                    [levels.wide, inset].map(|layer| layer.synthesis_views(GUARD).unwrap().source.size);
                 [sources[0], inset.eyes.size, sources[1]]
             };
             let first = levels(Vec3::NEG_Z);
