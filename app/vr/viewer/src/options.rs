@@ -37,6 +37,7 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
         // A display whose runtime makes frames asks for them.
         motion_vectors: false,
         frame_rate: settings.frame_rate,
+        ..options
     }
 }
 
