@@ -307,12 +307,12 @@ fn passes_declare_what_they_read_and_write() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let mut rig = Rig::new(gl, &local());
-    let mut method = create(gl, Method::Synthesized, &local(), &StereoOptions::default()).unwrap();
+    let mut method = session(gl, Method::Synthesized, &local());
     let pair = pair(Eye::Right, DepthConvention::Reversed);
-    rig.render(&mut *method, &pair);
+    rig.render(&mut method, &pair);
     let noted = Rc::<RefCell<Noted>>::default();
     gl.set_observer(Some(Box::new(Noting(noted.clone()))));
-    rig.render(&mut *method, &pair);
+    rig.render(&mut method, &pair);
     gl.set_observer(None);
     let Noted { declared, open, drawn } = &*noted.borrow();
     assert!(open.is_empty() && drawn.iter().all(|(pass, _)| !pass.is_empty()), "{drawn:?}");
