@@ -20,8 +20,8 @@ use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
     Aim, At, Event, Eye as ScriptEye, Fault, Input, Insets, POISON, Pictures, Script, State, VARIABLE, What,
 };
-use yoro_render::stereo::{Method, StereoFrame, StereoSession};
 use yoro_render::PreparedScene;
+use yoro_render::stereo::{Method, StereoFrame, StereoSession};
 use yoro_settings::Settings;
 use yoro_viewer::{render_settings, stereo_options};
 

@@ -6,9 +6,7 @@ use std::rc::Rc;
 use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
-use yoro::opengl::{
-    AnyView, Composer, Gather, GlState, GuessedDepth, Motion, Options, Outputs,
-};
+use yoro::opengl::{AnyView, Composer, Gather, GlState, GuessedDepth, Motion, Options, Outputs};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
@@ -50,13 +48,9 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     for outputs in outputs {
         Gather::new(gl, &Options::default(), outputs)?;
         for (strict, linear_interpolation) in [(false, true), (false, false), (true, false), (true, true)] {
-            for (divisor, kernel_height) in [(1, 1), (4, 15)] {
+            for divisor in [1, 4] {
                 let imbuffer = ImBufferSize::Divisor(divisor);
-                Paper::new(
-                    gl,
-                    outputs,
-                    PaperOptions { imbuffer, linear_interpolation, kernel_height, strict },
-                )?;
+                Paper::new(gl, outputs, PaperOptions { imbuffer, linear_interpolation, strict })?;
             }
         }
     }

@@ -22,14 +22,13 @@ use yoro_openxr_stub::script::{At, Event, Eye, Fault, Pictures, Script as Headse
 use host::{READY, Run, asset, device, layer, play, play_arm64, show};
 
 /// The settings of all devices, and of the desktop for comparison. A CPU renders this scene and quality quickly.
-const SETTINGS: [(&str, &str); 8] = [
+const SETTINGS: [(&str, &str); 7] = [
     ("scene", "prototype"),
     ("method", "yoro"),
     ("hud", "false"),
     ("shadow-map", "512"),
     ("msaa", "1"),
     ("bloom", "false"),
-    ("point-lights", "0"),
     ("render-scale", "0.5"),
 ];
 const SIZE: [u32; 2] = [320, 180];
@@ -368,7 +367,6 @@ fn settings_come_from_file_extras_and_properties() {
         "debug.yoro.shadow-map" = "512"
         "debug.yoro.refresh-rate" = "30"
         "debug.yoro.performance" = "boost"
-        "debug.yoro.performance-hints" = "false"
     "#;
     let Some(run) = show("settings", &format!("[device]\n{outside}"), "{ seconds = 1.2 }") else { return };
     let settings = run.summary.log_of("YORO").find(|text| text.starts_with("settings: ")).unwrap();
@@ -378,7 +376,10 @@ fn settings_come_from_file_extras_and_properties() {
             && settings.contains("seed=7"),
         "{settings}"
     );
-    assert_eq!(run.summary.requests.keys().collect::<Vec<_>>(), ["30 Hz", "sustained performance off"]);
+    assert_eq!(
+        run.summary.requests.keys().collect::<Vec<_>>(),
+        ["30 Hz", "hints for 1 thread, 33.3 ms", "sustained performance off"]
+    );
 }
 
 #[test]

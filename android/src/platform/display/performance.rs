@@ -56,22 +56,16 @@ impl Performance {
         let is_sustained = matches!(settings.performance, Level::SustainedLow | Level::SustainedHigh);
         let is_rate_new = rate_hz.is_some() && rate_hz != self.rate_hz;
         let is_level_new = self.sustained.is_none_or(|(asked, _)| asked != is_sustained);
-        let are_hints_new =
-            settings.performance_hints != self.hints.is_some() && Hints::are_offered(&self.android);
-        if !is_rate_new && !is_level_new && !are_hints_new {
+        if !is_rate_new && !is_level_new {
             return;
         }
         if let Some(hz) = rate_hz.filter(|_| is_rate_new) {
             self.rate_hz = rate_hz;
             self.set_frame_rate(window, hz);
+            self.hints = Hints::new(&self.android, Duration::from_secs_f32(1.0 / hz));
         }
         if is_level_new {
             self.sustained = Some((is_sustained, java.sustain_performance(is_sustained)));
-        }
-        if is_rate_new || are_hints_new {
-            let period = rate_hz.map(|hz| Duration::from_secs_f32(1.0 / hz));
-            self.hints =
-                period.filter(|_| settings.performance_hints).and_then(|p| Hints::new(&self.android, p));
         }
         log::info!("performance: {self}");
     }
@@ -140,11 +134,6 @@ struct Hints {
 }
 
 impl Hints {
-    fn are_offered(android: &Library) -> bool {
-        // SAFETY: the type is that of <android/performance_hint.h>.
-        unsafe { android.function::<GetManager>(c"APerformanceHint_getManager") }.is_some()
-    }
-
     /// Starts a session for this thread, whose frames may take `period`; `None` if this device takes no hints.
     fn new(android: &Library, period: Duration) -> Option<Hints> {
         // SAFETY: the types are those of <android/performance_hint.h>; a manager that is not null lives as long as the

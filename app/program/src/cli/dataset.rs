@@ -371,7 +371,6 @@ fn synthesize_command(args: &DatasetArgs, index: u32) -> String {
             ImBufferSize::Divisor(n) => format!("imbuffer {n}"),
             ImBufferSize::Fixed([w, h]) => format!("imbuffer {w}x{h}"),
         });
-        add(format!("kernel-height {}", paper.kernel_height));
         if !paper.linear_interpolation {
             add("no-linear-interpolation".into());
         }

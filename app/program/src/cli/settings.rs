@@ -44,8 +44,7 @@ impl Group for OneSample {
 pub struct Synthesis;
 
 impl Group for Synthesis {
-    const KEYS: &'static [&'static str] =
-        &["pipeline", "imbuffer", "linear-interpolation", "kernel-height", "strict"];
+    const KEYS: &'static [&'static str] = &["pipeline", "imbuffer", "linear-interpolation", "strict"];
 }
 
 /// The settings of stereo frames.
@@ -53,17 +52,8 @@ impl Group for Synthesis {
 pub struct Stereo;
 
 impl Group for Stereo {
-    const KEYS: &'static [&'static str] = &[
-        "pipeline",
-        "imbuffer",
-        "linear-interpolation",
-        "kernel-height",
-        "strict",
-        "guard-band",
-        "near-field",
-        "switch",
-        "split-disparity",
-    ];
+    const KEYS: &'static [&'static str] =
+        &["pipeline", "imbuffer", "linear-interpolation", "strict", "guard-band", "near-field", "switch"];
 }
 
 /// The settings of stereo frames whose pipelines are compared, each as its name says: none is switched to two renders.
@@ -71,15 +61,8 @@ impl Group for Stereo {
 pub struct Compared;
 
 impl Group for Compared {
-    const KEYS: &'static [&'static str] = &[
-        "imbuffer",
-        "linear-interpolation",
-        "kernel-height",
-        "strict",
-        "guard-band",
-        "near-field",
-        "split-disparity",
-    ];
+    const KEYS: &'static [&'static str] =
+        &["imbuffer", "linear-interpolation", "strict", "guard-band", "near-field"];
 }
 
 impl SettingOptions<Compared> {

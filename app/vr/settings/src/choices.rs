@@ -10,9 +10,6 @@ use crate::value::{Choice, SettingValue, find, named};
 /// The most point lights that can light a view.
 pub const MAX_POINT_LIGHTS: usize = 24;
 
-/// The largest number of rows of the kernel that fills holes in the paper's pipeline.
-pub const MAX_KERNEL_HEIGHT: u32 = 15;
-
 /// The numbers of samples per pixel of a rendered view, as far as a driver has them.
 pub const MSAA: [u32; 3] = [1, 2, 4];
 

@@ -6,10 +6,7 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use crate::choices::{
-    DisplayKind, FrameRate, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice, Performance,
-    Pipeline, Timewarp,
-};
+use crate::choices::{DisplayKind, FrameRate, MSAA, Method, MethodChoice, Performance, Pipeline, Timewarp};
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
 use crate::value::SettingValue;
@@ -122,10 +119,6 @@ settings! {
     /// paper: interpolate between ImBuffer entries.
     "linear-interpolation" linear_interpolation: bool = true;
         off_help("paper: do not interpolate between ImBuffer entries"),
-    /// paper: rows of the patcher's kernel, 1 to 15.
-    "kernel-height" kernel_height: u32 = 3;
-        value_name("ROWS");
-        range(|s| (1..=MAX_KERNEL_HEIGHT).contains(&s.kernel_height), "give 1 to 15 rows"),
     /// paper: whole source columns and one depth sample per ImBuffer pixel, as the text says.
     "strict" strict: bool = false,
     /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), or complete from a distance in metres (`1.0`).
@@ -142,10 +135,6 @@ settings! {
     /// Headsets whose runtime makes frames from colour, depth and motion vectors: with yoro and conventional, without near
     /// field, render every second frame and leave the others to the runtime.
     "frame-rate" frame_rate: FrameRate = FrameRate::default(),
-    /// hybrid: the far field starts where the eyes' disparity is this many pixels.
-    "split-disparity" split_disparity: f32 = 1.0;
-        value_name("PIXELS");
-        range(|s| is_positive(s.split_disparity), "give pixels above 0, such as 1"),
     /// The viewer: v1, v2, the URI of its QR code, or a parameter file.
     "viewer" viewer: String = "v2".into(),
     /// Viewers that the menu and the start screen offer besides v1 and v2: the last ones chosen.
@@ -178,18 +167,12 @@ settings! {
     "shadow-map" shadow_map: u32 = 2048; range(|s| s.shadow_map <= 8192, "give texels from 0 to 8192"),
     /// Glow around what is brighter than white.
     "bloom" bloom: bool = true,
-    /// Point lights that light a view, at most 24.
-    "point-lights" point_lights: usize = MAX_POINT_LIGHTS / 2;
-        range(|s| s.point_lights <= MAX_POINT_LIGHTS, "give a number from 0 to 24"),
     /// Length of the session in seconds, after which its summary is logged.
     "duration" duration: Option<f32> = None;
         range(|s| s.duration.is_none_or(is_positive), "give seconds above 0, or auto");
         auto("no end"),
     /// Questions to ask after `duration`, answered on a slider, such as `image-quality,comfort`; a `-` is shown as a space.
     "questions" questions: Vec<String> = Vec::new(),
-    /// The best rating, 2 to 100; the worst is 1.
-    "best-rating" best_rating: u32 = 5;
-        range(|s| (2..=100).contains(&s.best_rating), "give a number from 2 to 100"),
     /// The person who answers, for the log: words and numbers.
     "participant" participant: Option<String> = None,
     /// Number of the trial, for the log.
@@ -205,8 +188,6 @@ settings! {
         auto("headsets: the runtime's own; phones: the rate at the start"),
     /// Clock level of the processors. Phones: the two sustained levels are Android's sustained performance mode.
     "performance" performance: Performance = Performance::SustainedHigh,
-    /// Phones: tell Android's scheduler how long each frame takes (Android 13, some devices).
-    "performance-hints" performance_hints: bool = true,
     /// Headsets: submit the depth of both eyes to the compositor, which costs energy; read when a session begins.
     "submit-depth" submit_depth: bool = true,
     /// Headsets: one view instead of two, if the runtime or an API layer such as yoro's offers that. Meant for
@@ -415,23 +396,19 @@ mod tests {
         refused("method", &["method", "key=value"]);
         refused("method=fast", &["\"method\"", "fast", "auto", "conventional"]);
         refused("ipd=0.2", &["\"ipd\"", &Ipd::MAX.to_string(), &Ipd::DEFAULT.to_string()]);
-        refused("split-disparity=0", &["\"split-disparity\"", "pixels"]);
         refused("msaa=8", &["\"msaa\"", "1, 2 or 4"]);
         refused("renderer=forward", &["\"renderer\""]);
-        refused("point-lights=25", &[&MAX_POINT_LIGHTS.to_string()]);
         refused("ipd=wide", &["\"ipd\"", "wide"]);
         refused("imbuffer=0", &["\"imbuffer\"", "64"]);
         refused("imbuffer=a", &["\"imbuffer\"", "512x512"]);
         refused("guard-band=far", &["\"guard-band\"", "40px"]);
         refused("adaptive=yes", &["\"adaptive\"", "yes"]);
         refused("render-scale=9", &["0.25"]);
-        refused("kernel-height=40", &["15"]);
         refused("seed=-1", &["\"seed\""]);
         refused("methods=yoro,fast", &["\"methods\"", "fast"]);
         refused("display=oculus", &["\"display\"", "openxr", "cardboard"]);
         refused("screen=158x71", &["\"screen\"", "158x71mm", "auto"]);
         refused("screen=15.8x7.1mm", &["30 to 400"]);
-        refused("best-rating=1", &["\"best-rating\"", "2 to 100"]);
         refused("frame-rate=36", &["\"frame-rate\"", "full"]);
         refused("refresh-rate=0", &["\"refresh-rate\"", "auto"]);
     }

@@ -1,10 +1,8 @@
 //! What the renderer and the stereo methods get from the viewer's settings.
 
 use yoro_gl::Capabilities;
-use yoro_render::RenderSettings;
-use yoro_render::stereo::{
-    NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions,
-};
+use yoro_render::stereo::{NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions};
+use yoro_render::{MAX_POINT_LIGHTS, RenderSettings};
 use yoro_settings::{MSAA, Settings};
 
 /// Returns the renderer's settings for those of the viewer. If the driver is known and lacks the number of samples, it is
@@ -16,7 +14,8 @@ pub fn render_settings(settings: &Settings, capabilities: Option<&Capabilities>)
         msaa: msaa.unwrap_or(1),
         shadow_map_size: settings.shadow_map,
         bloom: settings.bloom,
-        point_lights: settings.point_lights,
+        // Phones shade each of them in each pixel.
+        point_lights: MAX_POINT_LIGHTS / 2,
         ..RenderSettings::default()
     }
 }
@@ -28,7 +27,6 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
     let paper = PaperOptions {
         imbuffer: settings.imbuffer,
         linear_interpolation: settings.linear_interpolation,
-        kernel_height: settings.kernel_height,
         strict: settings.strict,
     };
     StereoOptions {
@@ -39,7 +37,7 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
         // A display whose runtime makes frames asks for them.
         motion_vectors: false,
         frame_rate: settings.frame_rate,
-        split_disparity: settings.split_disparity,
+        ..options
     }
 }
 
@@ -47,7 +45,7 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
 mod tests {
     use super::*;
 
-    /// Every option of the methods must have a setting, or be the display's.
+    /// Every option of the methods must have a setting, be the display's, or belong to a method's definition.
     #[test]
     fn every_stereo_option_has_a_setting() {
         let changed = Settings::resolve(
@@ -55,12 +53,10 @@ mod tests {
             [
                 "imbuffer=4",
                 "linear-interpolation=false",
-                "kernel-height=5",
                 "strict=true",
                 "guard-band=40px",
                 "near-field=1",
                 "switch=false",
-                "split-disparity=2.5",
                 "frame-rate=half",
             ],
         );
@@ -78,6 +74,9 @@ mod tests {
                 _ => (a == b).then(|| path.to_owned()).into_iter().collect(),
             }
         }
-        assert_eq!(unchanged("", &changed, &default), [".motion-vectors", ".synthesis.pipeline"]);
+        assert_eq!(
+            unchanged("", &changed, &default),
+            [".motion-vectors", ".split-disparity", ".synthesis.pipeline"]
+        );
     }
 }

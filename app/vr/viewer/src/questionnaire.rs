@@ -7,6 +7,8 @@ use glam::{Quat, Vec3};
 
 /// Rotation of the head in radians that moves the marker from one end to the other.
 const SPAN: f32 = 0.7;
+/// The best rating; the worst is 1.
+const BEST: f32 = 5.0;
 /// Ratings are multiples of this.
 const STEP: f32 = 0.5;
 /// A marker that was moved and then left alone for this long, in nanoseconds, is the answer, since some viewers have no
@@ -18,8 +20,7 @@ const SETTLE_NS: i64 = 5_000_000_000;
 pub(crate) struct Questionnaire {
     /// In reverse order.
     questions: Vec<String>,
-    best: f32,
-    /// Between 1 and `best`, not rounded.
+    /// Between 1 and [`BEST`], not rounded.
     value: f32,
     /// The direction of the head in the last frame, in radians to the left.
     heading: Option<f32>,
@@ -28,11 +29,10 @@ pub(crate) struct Questionnaire {
 }
 
 impl Questionnaire {
-    /// Creates a questionnaire with ratings from 1 to `best`; the marker starts in the middle.
-    pub fn new(questions: &[String], best: u32) -> Questionnaire {
+    /// Creates a questionnaire with ratings from 1 to [`BEST`]; the marker starts in the middle.
+    pub fn new(questions: &[String]) -> Questionnaire {
         let mut questionnaire = Questionnaire {
             questions: questions.iter().rev().cloned().collect(),
-            best: best as f32,
             value: 0.0,
             heading: None,
             moved_ns: None,
@@ -42,7 +42,7 @@ impl Questionnaire {
     }
 
     fn center(&mut self) {
-        self.value = (1.0 + self.best) / 2.0;
+        self.value = (1.0 + BEST) / 2.0;
         self.heading = None;
         self.moved_ns = None;
     }
@@ -59,7 +59,7 @@ impl Questionnaire {
 
     /// Returns the position of the marker, from 0 to 1.
     pub fn position(&self) -> f32 {
-        (self.rating() - 1.0) / (self.best - 1.0)
+        (self.rating() - 1.0) / (BEST - 1.0)
     }
 
     /// Moves the marker with the head's rotation; to the right is a better rating.
@@ -68,7 +68,7 @@ impl Questionnaire {
         let heading = (-ahead.x).atan2(-ahead.z);
         let before = self.heading.replace(heading).unwrap_or(heading);
         let turn = (heading - before + PI).rem_euclid(TAU) - PI;
-        self.shift(-turn / SPAN * (self.best - 1.0), now_ns);
+        self.shift(-turn / SPAN * (BEST - 1.0), now_ns);
     }
 
     /// Moves the marker by a number of steps.
@@ -79,7 +79,7 @@ impl Questionnaire {
 
     fn shift(&mut self, change: f32, now_ns: i64) {
         let before = self.rating();
-        self.value = (self.value + change).clamp(1.0, self.best);
+        self.value = (self.value + change).clamp(1.0, BEST);
         if self.rating() != before {
             self.moved_ns = Some(now_ns);
         }
@@ -107,10 +107,10 @@ impl Questionnaire {
         text.clear();
         let Some(question) = self.questions.last() else { return };
         text.extend(question.chars().map(|c| if c == '-' { ' ' } else { c }));
-        let (rating, best) = (self.rating(), self.best);
+        let rating = self.rating();
         write!(
             text,
-            "?\n1 (worst) to {best} (best): {rating}\nturn your head to change it\ntap or trigger when done"
+            "?\n1 (worst) to {BEST} (best): {rating}\nturn your head to change it\ntap or trigger when done"
         )
         .expect("a string takes everything");
     }
@@ -122,13 +122,13 @@ mod tests {
 
     const SECOND: i64 = 1_000_000_000;
 
-    fn asked(best: u32) -> Questionnaire {
-        Questionnaire::new(&["image-quality".into(), "comfort".into()], best)
+    fn asked() -> Questionnaire {
+        Questionnaire::new(&["image-quality".into(), "comfort".into()])
     }
 
     #[test]
     fn questions_come_in_order_each_from_the_middle() {
-        let mut q = asked(5);
+        let mut q = asked();
         assert_eq!((q.rating(), q.position()), (3.0, 0.5));
         q.nudge(3.0, 0);
         assert_eq!(q.answer(), Some(("image-quality".into(), 4.5)));
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn turning_right_raises_the_rating_up_to_its_ends() {
-        let mut q = asked(5);
+        let mut q = asked();
         let look = |q: &mut Questionnaire, left: f32| q.look(Quat::from_rotation_y(left), 0);
         // The head's first direction is not a rotation.
         look(&mut q, 3.0);
@@ -155,7 +155,7 @@ mod tests {
         look(&mut q, 3.0 - 1.5 * SPAN);
         assert_eq!(q.rating(), 3.0);
         // Through the back, where the angle wraps around.
-        let mut q = asked(5);
+        let mut q = asked();
         look(&mut q, PI - 0.01);
         look(&mut q, PI - 0.01 + SPAN / 4.0);
         assert_eq!(q.rating(), 2.0);
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn only_a_moved_marker_answers_by_itself() {
-        let mut q = asked(7);
+        let mut q = asked();
         assert!(!q.has_settled(100 * SECOND));
         q.nudge(1.0, 2 * SECOND);
         assert!(!q.has_settled(6 * SECOND) && q.has_settled(7 * SECOND));
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn the_question_fits_four_lines() {
         let mut text = String::new();
-        asked(5).write(&mut text);
+        asked().write(&mut text);
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(lines[..2], ["image quality?", "1 (worst) to 5 (best): 3"]);
         assert!(lines.len() == 4 && lines.iter().all(|line| line.len() <= yoro_lenses::COLUMNS));

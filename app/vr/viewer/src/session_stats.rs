@@ -91,8 +91,7 @@ impl SessionStats {
 
     /// Asks the settings' questions, unless they are being asked already.
     pub fn ask(&mut self, settings: &Settings) {
-        let Settings { questions, best_rating, .. } = settings;
-        self.questionnaire.get_or_insert_with(|| Questionnaire::new(questions, *best_rating));
+        self.questionnaire.get_or_insert_with(|| Questionnaire::new(&settings.questions));
     }
 
     /// Returns the current question.

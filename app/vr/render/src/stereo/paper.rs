@@ -10,11 +10,13 @@ use yoro::eyes::Warp;
 use yoro::opengl::{Outputs, Source, draw_target, set_source};
 use yoro::synthesis::Uniforms;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
-use yoro_settings::MAX_KERNEL_HEIGHT;
 pub use yoro_settings::{ImBufferSize, ParseImBufferSizeError};
 
 /// Rows per workgroup of Algorithm 2, with one invocation for each row.
 const ROWS: u32 = 64;
+
+/// Height of the patcher's kernel in rows, `h` of Algorithm 3.
+const KERNEL_HEIGHT: i32 = 3;
 
 /// Options of the paper's pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -24,8 +26,6 @@ pub struct PaperOptions {
     pub imbuffer: ImBufferSize,
     /// Interpolates the shift between ImBuffer entries, section "(d) Linear Interpolation".
     pub linear_interpolation: bool,
-    /// Height of the patcher's kernel in rows, `h` of Algorithm 3.
-    pub kernel_height: u32,
     /// Stores whole source columns and samples one depth per ImBuffer pixel, as in Algorithm 2. Otherwise the
     /// fractional column is stored, and the nearest depth of the block is taken.
     pub strict: bool,
@@ -33,12 +33,7 @@ pub struct PaperOptions {
 
 impl Default for PaperOptions {
     fn default() -> PaperOptions {
-        PaperOptions {
-            imbuffer: ImBufferSize::Divisor(1),
-            linear_interpolation: true,
-            kernel_height: 3,
-            strict: false,
-        }
+        PaperOptions { imbuffer: ImBufferSize::Divisor(1), linear_interpolation: true, strict: false }
     }
 }
 
@@ -139,7 +134,7 @@ impl Synthesis for Paper {
         pass.write([target.image(Format::Rgba8)]).run(|| {
             set_source(self.patch.bind(), source, &uniforms);
             self.set_imbuffer(&self.patch);
-            self.patch.set("kernel_height", self.options.kernel_height.clamp(1, MAX_KERNEL_HEIGHT) as i32);
+            self.patch.set("kernel_height", KERNEL_HEIGHT);
             self.patch.texture("imbuffer", 2, self.imbuffer.color(0).raw());
             draw_target(gl, target, self.outputs);
         });

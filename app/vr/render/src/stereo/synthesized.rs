@@ -140,9 +140,11 @@ impl StereoMethod for Synthesized {
         // The other eye first: both are finished in the same samples.
         let (to, has_depth) = over.begin(frame, other, &surfaces)?;
         let synthesis = synthesizers.get(has_depth)?;
-        source.bloom = targets.bloom.as_ref().filter(|_| !is_developed).map(|bloom| {
-            Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() }
-        });
+        source.bloom = targets
+            .bloom
+            .as_ref()
+            .filter(|_| !is_developed)
+            .map(|bloom| Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() });
         synthesis.synthesize(source, &views.warp, &to)?;
         over.finish(frame, other, &surfaces);
         // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
@@ -156,4 +158,3 @@ impl StereoMethod for Synthesized {
         motion.write(frame, (&depth, &views.source), self.options.guard_band)
     }
 }
-

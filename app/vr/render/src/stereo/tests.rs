@@ -6,8 +6,8 @@ use std::rc::Rc;
 use glam::{Quat, Vec3};
 
 use super::*;
-use crate::fixture::quad;
 use crate::PreparedScene;
+use crate::fixture::quad;
 use crate::view::{DepthCopy, RenderSettings, Seam};
 use frame::Frame;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose, StereoViews};

@@ -8,7 +8,9 @@ use super::cluster::{Culler, Selection};
 use super::scene::{Features, GpuScene};
 use yoro::eyes::Pose;
 use yoro_assets::{Bounds, Viewpoint};
-use yoro_gl::{Blend, Context, DepthTest, Format, GlError, Pass, Program, RasterState, RenderTarget, ShaderSource};
+use yoro_gl::{
+    Blend, Context, DepthTest, Format, GlError, Pass, Program, RasterState, RenderTarget, ShaderSource,
+};
 
 /// Distance from the viewpoints, in metres, within which a large scene has shadows.
 const REACH: f32 = 60.0;

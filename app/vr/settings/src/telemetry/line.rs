@@ -406,10 +406,7 @@ mod tests {
         };
         let text = line.to_string();
         let expected = "v=2,t=3600.0s,method=yoro,pipeline=gather,scene=prototype,FPS=60.0/60,Stale=4000000000,frame=16.68ms,p99=17.00ms,App=6.10ms(geometry=1.250,gather-march=0.500),CPU=141.1%,RSS=212.4MB,mA_raw=-9223372036854775808,mA=-512.0,mV=-1,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=-3.0C,thermal=6,headroom=0.42,scale=0.80,imbuffer=4,frames=72,status=not-charging,run=";
-        assert_eq!(
-            text,
-            format!("{expected}{},perf=sustained,auto=6.1/8.9ms", "r".repeat(64))
-        );
+        assert_eq!(text, format!("{expected}{},perf=sustained,auto=6.1/8.9ms", "r".repeat(64)));
         let read: Line = text.parse().unwrap();
         assert_eq!(read.to_string(), text);
         assert_eq!((read.current_raw, read.stale, read.status), (line.current_raw, line.stale, line.status));

@@ -380,7 +380,9 @@ impl Cardboard {
         }
         let Attached { images, timewarp, lens, .. } = attached;
         let mut turn = Quat::IDENTITY;
-        if let Some((rendered, _)) = attached.rendered.filter(|_| self.viewer.settings().timewarp != Timewarp::Off) {
+        if let Some((rendered, _)) =
+            attached.rendered.filter(|_| self.viewer.settings().timewarp != Timewarp::Off)
+        {
             turn = rendered.inverse() * displayed;
         }
         match timewarp.as_mut().zip(attached.rendered.as_ref()) {

@@ -205,7 +205,7 @@ fn choices_on_this_machine() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("wall.obj"), "v -2 -2 -3\nv 2 -2 -3\nv 2 2 -3\nv -2 2 -3\nf 1 2 3 4\n")
         .unwrap();
-    let bare = ["msaa=1", "shadow-map=0", "point-lights=0", "bloom=false"];
+    let bare = ["msaa=1", "shadow-map=0", "bloom=false"];
     for (scene, more) in [
         ("wall", &bare[..]),
         ("prototype", &bare),
