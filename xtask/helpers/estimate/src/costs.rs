@@ -122,9 +122,9 @@ impl Costs {
         let mut outermost = 0;
         for text in row.loops.split_whitespace() {
             let (is_inner, body) = text.strip_prefix('>').map_or((false, text), |body| (true, body));
-            let body = body.split_once('/').and_then(|(slots, fetches)| {
-                Some(work(slots.parse().ok()?, fetches.parse().ok()?))
-            });
+            let body = body
+                .split_once('/')
+                .and_then(|(slots, fetches)| Some(work(slots.parse().ok()?, fetches.parse().ok()?)));
             let body = body.filter(|_| !is_inner || !parts.loops.is_empty());
             let body = body.with_context(|| format!("unreadable loops of {name}: {}", row.loops))?;
             let around = if is_inner { &mut parts.loops[outermost] } else { &mut parts.straight };
@@ -157,7 +157,9 @@ impl Costs {
             (2 * shared - all.len() as i32, shared)
         };
         let fits = |row: &&Row| {
-            file(row) == own_file && row.stage == stage && macros(row).any(|name| MAPS.contains(&name)) == maps
+            file(row) == own_file
+                && row.stage == stage
+                && macros(row).any(|name| MAPS.contains(&name)) == maps
         };
         self.rows.iter().filter(fits).max_by_key(similarity)
     }

@@ -34,7 +34,14 @@ pub const GPUS: [Device; 6] = [
     // Adreno 740.
     Device { name: "quest-3", gpu: "a740", size: [1680, 1760], slots: 1.0e12, fetches: 28.8e9, bytes: 60e9 },
     // Adreno 750: 1536 lanes and 48 texels at 0.9 GHz, and 64-bit LPDDR5X. Its driver is Mesa's turnip.
-    Device { name: "steam-frame", gpu: "a750", size: [2160, 2160], slots: 1.38e12, fetches: 43e9, bytes: 77e9 },
+    Device {
+        name: "steam-frame",
+        gpu: "a750",
+        size: [2160, 2160],
+        slots: 1.38e12,
+        fetches: 43e9,
+        bytes: 77e9,
+    },
     // Two cores with 24 lanes each at 0.85 GHz, and 32-bit LPDDR4X.
     Device { name: "mali-g52", gpu: "g52", size: [1200, 1080], slots: 0.041e12, fetches: 3.4e9, bytes: 13e9 },
     // Mali-G57 MC2 at 0.95 GHz: two cores with 32 lanes and 4 texels each.

@@ -69,7 +69,8 @@ fn main() -> anyhow::Result<()> {
         std::env::var_os("YORO_SHADERS").is_some(),
         "the shaders must count what they run: use cargo xtask maintain estimate"
     );
-    let scenes = BUILTINS.iter().filter(|b| args.scenes.is_empty() || args.scenes.iter().any(|s| s == b.name));
+    let scenes =
+        BUILTINS.iter().filter(|b| args.scenes.is_empty() || args.scenes.iter().any(|s| s == b.name));
     let mut estimates = Vec::new();
     for builtin in scenes {
         eprintln!("counting {}", builtin.name);
@@ -154,7 +155,12 @@ impl Estimator {
     }
 
     /// Returns the passes of a method's first frame.
-    fn record(&mut self, method: Method, pair: &EyePair, level: FoveationLevel) -> anyhow::Result<Vec<RecordedPass>> {
+    fn record(
+        &mut self,
+        method: Method,
+        pair: &EyePair,
+        level: FoveationLevel,
+    ) -> anyhow::Result<Vec<RecordedPass>> {
         let options = StereoOptions { policy: None, ..StereoOptions::default() };
         let mut session = StereoSession::new(&self.gl, method.into(), &self.settings, &options)?;
         let views = pair.stereo_views(level.foveation().as_ref(), Gaze::Axes(pair.axes()))?;
@@ -190,7 +196,10 @@ impl Estimator {
         for gpu in GPUS {
             for (level, share) in counted {
                 let Executed { slots, fetches, bytes } = level.executed(&gpu, depth, March::of(passes))?;
-                let alone = PASSES.into_iter().zip(slots).map(|(pass, slots)| (format!("slots/{}/{pass}", gpu.gpu), slots));
+                let alone = PASSES
+                    .into_iter()
+                    .zip(slots)
+                    .map(|(pass, slots)| (format!("slots/{}/{pass}", gpu.gpu), slots));
                 let rest = [("fetches", fetches), ("traffic", bytes)]
                     .map(|(name, value)| (format!("{}{name}/{}", tables::SYNTHESIS_ALONE, gpu.gpu), value));
                 for (metric, value) in alone.chain(rest) {

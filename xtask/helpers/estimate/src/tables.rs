@@ -74,9 +74,10 @@ impl<'a> Entry<'a> {
     /// Returns in each scene the sum of the metrics that start with `prefix` and for whose rest `counts` is true.
     fn sums(&self, prefix: &str, counts: impl Fn(&str) -> bool) -> Vec<f64> {
         let of_frame = |frame: &Frame| -> f64 {
-            let counted =
-                frame.iter().filter(|(name, _)| name.strip_prefix(prefix).is_some_and(&counts));
-            counted.map(|(name, value)| if name.contains(VERTICES) { value / self.larger } else { *value }).sum()
+            let counted = frame.iter().filter(|(name, _)| name.strip_prefix(prefix).is_some_and(&counts));
+            counted
+                .map(|(name, value)| if name.contains(VERTICES) { value / self.larger } else { *value })
+                .sum()
         };
         self.scenes().map(|estimate| average(estimate.frames.iter().map(of_frame))).collect()
     }
@@ -130,7 +131,8 @@ pub fn report(mut estimates: Vec<Estimate>, size: [u32; 2]) -> Report {
     for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
         section.table(by_scene(entry));
     }
-    for table in [ratios(&entries), worth(&entries), break_evens(&entries), alone(&entries), passes(&entries)] {
+    for table in [ratios(&entries), worth(&entries), break_evens(&entries), alone(&entries), passes(&entries)]
+    {
         section.table(table);
     }
     Report { title: "Estimate".into(), sections: vec![section], ..Report::default() }
@@ -303,7 +305,8 @@ fn passes(entries: &[Entry]) -> Table {
         }
     }
     let [width, height] = SIZE;
-    table.note = format!("Vertices do not depend on the size: the figures are for eyes of {width} x {height} pixels.");
+    table.note =
+        format!("Vertices do not depend on the size: the figures are for eyes of {width} x {height} pixels.");
     table
 }
 

@@ -1,7 +1,7 @@
 //! What a tile-based GPU moves between its tiles and memory.
 //!
 //! Passes declare which images they read, load and store. An image that is loaded or stored moves once. A triangle that
-//! covers the view reads each texel of its images once, a mesh one texel of each image for each fragment; the shadow map
+//! covers the view reads each texel of its images once, a mesh one texel of each map of its material for each fragment; the shadow map
 //! is always read once for each fragment, and the march reads depth only where a tile has no law. Samples are averaged in
 //! the tiles, unless [`Assumed::averages_in_memory`] says otherwise.
 
@@ -47,7 +47,8 @@ impl Assumed {
             let times = f64::from(write.is_loaded) + f64::from(write.is_stored);
             times * pixels(write.image.size) * self.texel_bytes(&write.image)
         });
-        let read = pass.declaration.reads.iter().map(|read| self.texels(pass, read) * self.texel_bytes(&read.image));
+        let read =
+            pass.declaration.reads.iter().map(|read| self.texels(pass, read) * self.texel_bytes(&read.image));
         written.sum::<f64>() + read.sum::<f64>()
     }
 
@@ -56,16 +57,32 @@ impl Assumed {
         let name = pass.declaration.name;
         match *uniform {
             // Samples are written to be averaged, and read.
-            COPIED if image.samples > 1 => f64::from(u8::from(self.averages_in_memory)) * 2.0 * pixels(image.size),
+            COPIED if image.samples > 1 => {
+                f64::from(u8::from(self.averages_in_memory)) * 2.0 * pixels(image.size)
+            }
             COPIED => pixels(image.size),
             _ if name == TILES => pixels(image.size),
-            "depth_map" if name == MARCH => (1.0 - self.laws) * pass.draws.iter().map(|draw| once(image, draw)).sum::<f64>(),
-            uniform => pass.draws.iter().map(|draw| match draw.shape {
-                Shape::Screen if uniform != SHADOW_MAP => once(image, draw),
-                _ => fragments(pass, draw),
-            }).sum(),
+            uniform => {
+                // The sky, which covers the view among meshes, reads none of their maps.
+                let meshes = || pass.draws.iter().filter(|draw| draw.shape != Shape::Screen);
+                if meshes().next().is_some() || uniform == SHADOW_MAP {
+                    let reading = meshes().filter(|draw| has_map(draw, uniform));
+                    return reading.map(|draw| fragments(pass, draw)).sum();
+                }
+                // A pass with several draw calls declares an image for each.
+                let largest = pass.draws.iter().max_by(|a, b| pixels(a.area).total_cmp(&pixels(b.area)));
+                let share = if name == MARCH && uniform == "depth_map" { 1.0 - self.laws } else { 1.0 };
+                share * largest.map_or(0.0, |draw| once(image, draw))
+            }
         }
     }
+}
+
+/// False if the program is that of a material without this map.
+fn has_map(draw: &RecordedDraw, uniform: &str) -> bool {
+    let maps = ["diffuse_map", "specular_map", "emissive_map", "normal_map"];
+    let macros = || draw.program.defines.iter().map(|(name, _)| name.to_lowercase());
+    !maps.contains(&uniform) || macros().any(|name| name == uniform)
 }
 
 fn pixels(size: [u32; 2]) -> f64 {
@@ -116,10 +133,17 @@ pub mod tests {
         Image { format, size: SIZE, samples }
     }
 
-    pub fn pass(name: &'static str, file: &str, shape: Shape, reads: &[(&'static str, Image)]) -> RecordedPass {
+    pub fn pass(
+        name: &'static str,
+        file: &str,
+        shape: Shape,
+        reads: &[(&'static str, Image)],
+    ) -> RecordedPass {
         let reads = reads.iter().map(|&(uniform, image)| Read { uniform, image }).collect();
         let writes = vec![Write { image: image(Format::Rgba8, 1), is_loaded: false, is_stored: true }];
-        let program = ProgramRecipe { files: vec![file.into()], defines: Vec::new() }.into();
+        let maps = ["DIFFUSE_MAP"].iter().filter(|_| file == "a.frag");
+        let defines = maps.map(|map| (map.to_string(), String::new())).collect();
+        let program = ProgramRecipe { files: vec![file.into()], defines }.into();
         let samples_passed = (shape != Shape::Screen).then_some(30);
         let draws = vec![RecordedDraw { program, shape, area: SIZE, samples_passed }];
         RecordedPass { declaration: Declaration { name, reads, writes }, draws }
@@ -129,9 +153,15 @@ pub mod tests {
     fn texels_are_read_once_or_for_each_fragment() {
         let map = image(Format::Rgba8, 1);
         let bytes = |name, shape, uniform| {
-            Assumed { laws: 0.75, ..Assumed::default() }.bytes(&pass(name, "a.frag", shape, &[(uniform, map)])) / 4.0
+            Assumed { laws: 0.75, ..Assumed::default() }.bytes(&pass(
+                name,
+                "a.frag",
+                shape,
+                &[(uniform, map)],
+            )) / 4.0
         };
         assert_eq!(bytes("surfaces", MESH, "diffuse_map"), PIXELS + 30.0);
+        assert_eq!(bytes("surfaces", MESH, "normal_map"), PIXELS);
         assert_eq!(bytes("bloom", Shape::Screen, "source"), PIXELS + PIXELS);
         assert_eq!(bytes(MARCH, Shape::Screen, "depth_map"), PIXELS + 0.25 * PIXELS);
         assert_eq!(vertex_bytes(&pass("surfaces", "a.frag", MESH, &[])), 4.0 * 32.0 + 6.0 * 4.0);
