@@ -1,4 +1,5 @@
-//! Keeps the floors of `app`: a crate uses crates of its own floor and of those below, never of one above.
+//! Keeps the floors of `app`: a crate uses crates of its own floor and of those below, never of one above; and each keeps
+//! its budget of lines.
 
 use std::path::Path;
 use std::process::Command;
@@ -20,6 +21,23 @@ const CELLAR: &str = "shaders-glsl";
 const BESIDE: [&str; 2] = ["tests", "xtask"];
 /// The workspaces.
 const MANIFESTS: [&str; 2] = ["Cargo.toml", "app/engines/bevy/Cargo.toml"];
+
+/// Thousands of lines of Rust that each floor may have. Room for a new thing is made by an old one; a change that needs more
+/// changes this table, and its commit says why.
+const LINES: [(&str, f64); 10] = [
+    ("app/engines", 36.0),
+    ("app/base", 11.0),
+    ("app/vr", 27.0),
+    ("app/lab", 18.5),
+    ("app/program", 6.5),
+    ("android", 4.7),
+    ("scenes", 12.3),
+    ("shaders-glsl", 0.3),
+    ("tests", 22.0),
+    ("xtask", 10.0),
+];
+/// Thousands of words that all documents may have.
+const WORDS: f64 = 34.0;
 
 /// A package, and what it compiles of this repository's packages, as folders.
 struct Package {
@@ -95,4 +113,33 @@ fn the_house_is_as_it_is_drawn() {
         assert!(!may_use(below, above), "{below} {above}");
     }
     assert!(!may_use("android", "app/lab") && !may_use("app/lab", "android"));
+}
+
+/// Returns the files of the repository below a folder that have an ending, without those that git ignores.
+fn files(folder: &str, ending: &str) -> Vec<String> {
+    let ending = format!(".{ending}");
+    let arguments = ["ls-files", "--cached", "--others", "--exclude-standard", "--", folder];
+    let output = Command::new("git").current_dir(root()).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let names = String::from_utf8(output.stdout).unwrap();
+    let names = names.lines().filter(|name| name.ends_with(&ending));
+    names.filter_map(|name| std::fs::read_to_string(root().join(name)).ok()).collect()
+}
+
+#[test]
+fn the_house_keeps_its_budget() {
+    let thousands = |count: usize| count as f64 / 1e3;
+    let mut over = Vec::new();
+    for (floor, most) in LINES {
+        let lines = thousands(files(floor, "rs").iter().map(|file| file.lines().count()).sum());
+        println!("{floor}: {lines:.1} of {most:.1} thousand lines");
+        if lines > most {
+            over.push(format!("{floor} has {lines:.1} thousand lines of Rust, and {most:.1} is its budget"));
+        }
+    }
+    let words = thousands(files(".", "md").iter().map(|file| file.split_whitespace().count()).sum());
+    if words > WORDS {
+        over.push(format!("the documents have {words:.1} thousand words, and {WORDS:.1} is their budget"));
+    }
+    assert!(over.is_empty(), "{}: make room, or change the table and say why", over.join("; "));
 }

@@ -2,9 +2,10 @@
 
 mod cli;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory as _, FromArgMatches as _, Parser};
 use cli::{Subcommand, terminal};
 use yoro_files::interrupt;
 
@@ -61,7 +62,9 @@ impl Command {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let matches = Arguments::command().get_matches();
+    let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    yoro_files::protect(inputs(&Arguments::command(), &matches));
     let level = match arguments.verbose {
         0 => "warn",
         1 => "info",
@@ -79,10 +82,21 @@ fn main() -> ExitCode {
     }
 }
 
+/// Returns what the innermost subcommand is given without an option, which is its inputs.
+fn inputs(command: &clap::Command, matches: &clap::ArgMatches) -> Vec<PathBuf> {
+    match matches.subcommand() {
+        Some((name, matches)) => {
+            command.find_subcommand(name).map_or_else(Vec::new, |command| inputs(command, matches))
+        }
+        None => {
+            let given = command.get_positionals().filter_map(|input| matches.get_raw(input.get_id().as_str()));
+            given.flatten().map(PathBuf::from).collect()
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory as _;
-
     use super::*;
 
     fn check_defaults(command: &clap::Command) {

@@ -13,6 +13,7 @@ pub mod xdg;
 use std::fs;
 use std::io::{self, BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 pub use input::*;
 
@@ -53,6 +54,12 @@ pub enum FileError {
         path: PathBuf,
         /// The operating system's error.
         source: io::Error,
+    },
+    /// The output would replace an input.
+    #[error("{} is an input of this command: name another file for the output", path.display())]
+    IsInput {
+        /// The file.
+        path: PathBuf,
     },
     /// The user has asked to stop.
     #[error(transparent)]
@@ -101,6 +108,15 @@ pub fn create_folder(path: &Path) -> Result<(), FileError> {
     })
 }
 
+static INPUTS: OnceLock<Vec<PathBuf>> = OnceLock::new();
+
+/// Names the inputs of this process, which [`write_with`] refuses to replace. Only the first call counts.
+pub fn protect(inputs: impl IntoIterator<Item = PathBuf>) {
+    let files = inputs.into_iter().filter(|input| input.is_file()).filter_map(|input| input.canonicalize().ok());
+    // A second call changes nothing.
+    let _ = INPUTS.set(files.collect());
+}
+
 /// Writes `bytes` to `path`, as [`write_with`] does.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_with(path, |out| out.write_all(bytes))
@@ -122,6 +138,9 @@ pub fn write_with(
     }
     // The target of a link is replaced, not the link.
     let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    if INPUTS.get().is_some_and(|inputs| inputs.contains(&target)) {
+        return Err(FileError::IsInput { path: path.into() });
+    }
     if target.exists() && !target.is_file() {
         let mut file = fs::OpenOptions::new().write(true).open(&target).map_err(failed)?;
         return fill_and_flush(&mut file, fill).map_err(failed);
