@@ -311,7 +311,8 @@ mod tests {
 
     #[test]
     fn all_devices_have_all_parts() {
-        for device in GPUS {
+        // Bifrost's slots are tuples of two instructions.
+        for device in GPUS.into_iter().filter(|device| device.gpu != "g52") {
             let costs = Costs::of(device.gpu, false).unwrap();
             let law = costs.part("march: law");
             let short = costs.part("march: short way");

@@ -354,7 +354,8 @@ fn every_section_has_its_place_and_no_row_is_silently_empty() {
 #[test]
 fn the_page_is_escaped_self_contained_and_has_its_pictures() {
     let dir = tempfile::tempdir().unwrap();
-    let html = report(dir.path()).report().to_html().unwrap();
+    // The name of SVG's elements is an address that nobody loads.
+    let html = report(dir.path()).report().to_html().unwrap().replace("http://www.w3.org/2000/svg", "");
     for foreign in ["http://", "https://", "<link", "url(", "@import", "src=\"/", "<script src", "<b>&\"café"]
     {
         assert!(!html.contains(foreign), "{foreign}");
