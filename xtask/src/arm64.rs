@@ -24,9 +24,6 @@ const LIBSTDCXX: &str = "libstdc++-";
 const QEMU: [&str; 2] = ["usr/bin/qemu-aarch64-static", "usr/bin/qemu-aarch64"];
 
 /// Installs what compiling for arm64 needs, without asking, and fetches what its programs need. Returns the folder.
-///
-/// # Errors
-/// Fails if something cannot be obtained on this machine.
 pub fn fetch() -> anyhow::Result<PathBuf> {
     let needs = || {
         let rust = Rust::for_target(TRIPLE).map(|(rust, _)| rust);
@@ -45,9 +42,6 @@ pub fn fetch() -> anyhow::Result<PathBuf> {
 }
 
 /// Compiles the simulated Android host, and returns its launcher: `launcher APK SCRIPT ...`.
-///
-/// # Errors
-/// Fails if the host does not compile.
 pub fn build_host() -> anyhow::Result<PathBuf> {
     let folder = folder()?;
     let system = System::make(&folder)?;
@@ -138,9 +132,6 @@ fn newest(names: &str) -> Option<String> {
 }
 
 /// Returns the command that runs a program for arm64 in qemu, with Mesa's rasterizer.
-///
-/// # Errors
-/// Fails if something cannot be obtained on this machine.
 pub fn emulated(program: &Path) -> anyhow::Result<Command> {
     let system = System::make(&fetch()?)?;
     let mut command = Command::new(&system.qemu);
@@ -150,9 +141,6 @@ pub fn emulated(program: &Path) -> anyhow::Result<Command> {
 
 /// Returns a cargo that compiles and links for arm64 with `--target` [`TRIPLE`]. Fetches and installs what it needs.
 /// Panics in its programs unwind.
-///
-/// # Errors
-/// Fails if something cannot be obtained on this machine.
 pub fn cargo() -> anyhow::Result<Command> {
     command(&System::make(&fetch()?)?, Panic::Unwind)
 }

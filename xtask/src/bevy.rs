@@ -18,9 +18,6 @@ pub enum Task {
 }
 
 /// Runs the example without a window.
-///
-/// # Errors
-/// Fails if the example fails.
 pub fn run() -> anyhow::Result<()> {
     setup::vulkan();
     let folder = root().join("out/bevy").display().to_string();
@@ -28,9 +25,6 @@ pub fn run() -> anyhow::Result<()> {
 }
 
 /// Runs all tests. Without Monado, its tests are skipped with a message.
-///
-/// # Errors
-/// Fails if a test fails.
 pub fn test() -> anyhow::Result<()> {
     let start = Instant::now();
     setup::vulkan();

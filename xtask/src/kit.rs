@@ -8,9 +8,6 @@ use crate::cargo;
 use crate::folders::target_folder;
 
 /// Writes the kit to `target/kit`, and returns the folder.
-///
-/// # Errors
-/// Fails if the program that writes it does not compile, or the folder cannot be written.
 pub fn kit() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("kit");
     let path = folder.display().to_string();

@@ -69,9 +69,6 @@ pub fn cpp() -> apt::Need {
 }
 
 /// Installs what is missing. Prints nothing if nothing is missing. Returns true if OSMesa is here, which is optional.
-///
-/// # Errors
-/// Fails if this program cannot install it. The error says what to install.
 pub fn ensure() -> anyhow::Result<bool> {
     if !cfg!(target_os = "linux") {
         bail!(

@@ -11,9 +11,6 @@ use crate::folders::{copy_folder, read_text, remove, target_folder, write};
 use crate::{cargo, lint, web};
 
 /// Builds the site, and returns its folder, `target/site`. `release` is a folder with the files of a release.
-///
-/// # Errors
-/// Fails if a part does not compile, or a document links to a file that does not exist.
 pub fn build(release: Option<&Path>) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let target = target_folder()?;

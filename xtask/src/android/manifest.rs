@@ -6,9 +6,6 @@ use crate::ndk::target::{NATIVE_LIBRARIES, PROPERTIES, QUEST_TARGET_API, TARGET_
 
 /// Completes the manifest written by cargo-apk. Adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] to the application, and
 /// declares it a game: from API level 36 on, Android lets only games fix their orientation on large screens.
-///
-/// # Errors
-/// Fails if the manifest has no application.
 pub fn complete(manifest: &str) -> anyhow::Result<String> {
     let libraries = NATIVE_LIBRARIES
         .map(|name| format!(r#"<uses-native-library android:name="{name}" android:required="false"/>"#));
@@ -22,9 +19,6 @@ pub fn complete(manifest: &str) -> anyhow::Result<String> {
 /// <https://developers.meta.com/horizon/resources/publish-mobile-manifest> (5 March 2026) or its upload fails, and may
 /// ask for no permission that it does not use. What concerns other makers' headsets, phones and device farms goes, too:
 /// on a Quest, nothing would use it.
-///
-/// # Errors
-/// Fails if the manifest lacks what is to be changed.
 pub fn for_quest(manifest: &str) -> anyhow::Result<String> {
     let [own, others] = [NATIVE_LIBRARIES[1], NATIVE_LIBRARIES[0]];
     debug_assert!(own.contains("oculus") && !others.contains("oculus"));

@@ -21,9 +21,6 @@ pub struct Quality {
 pub type Case = [&'static str; 3];
 
 /// Compares the synthesized eye and the rendered eye of each case with what Godot draws for the synthesized eye.
-///
-/// # Errors
-/// Fails if a picture is missing.
 pub fn compare(
     yoro: &mut dyn FnMut() -> Command,
     folder: &Path,

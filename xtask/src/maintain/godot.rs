@@ -18,9 +18,6 @@ const RELEASE: &str = "sid";
 const PACKAGES: [&str; 4] = ["godot", "monado-service", "libopenxr1-monado", "mesa-vulkan-drivers"];
 
 /// Sets up Godot, and returns how to use it.
-///
-/// # Errors
-/// Fails if it cannot be obtained on this machine.
 pub fn usage() -> anyhow::Result<String> {
     let folder = make()?.display().to_string();
     Ok(format!(
@@ -32,9 +29,6 @@ pub fn usage() -> anyhow::Result<String> {
 }
 
 /// Returns the folder with the programs `godot` and `monado-service`. Fetches and unpacks what is missing.
-///
-/// # Errors
-/// Fails if they cannot be obtained on this machine.
 pub fn make() -> anyhow::Result<PathBuf> {
     if !cfg!(target_arch = "x86_64") {
         bail!("it is fetched for x86_64 only");

@@ -31,9 +31,6 @@ const GENERATED: [Generated; 3] = [
 ];
 
 /// Renews all of it. Returns a text on what to check next, and false if a shader has a fault.
-///
-/// # Errors
-/// Fails if glslang is missing, a shader does not compile, or a file cannot be written.
 pub fn renew() -> anyhow::Result<(String, bool)> {
     setup::vulkan();
     for Generated { what, test, variable } in GENERATED {

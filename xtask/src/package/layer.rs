@@ -36,9 +36,6 @@ pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
 
 /// Makes the AAR in a folder of its own for this machine's processor only, for the simulated Android host. It is hardly
 /// optimized.
-///
-/// # Errors
-/// Fails if it does not compile.
 pub fn aar_for_tests() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("android/layer");
     make(&folder)?;

@@ -41,9 +41,6 @@ impl Machine {
     }
 
     /// Returns cargo, whose output does not contain the builder's folders.
-    ///
-    /// # Errors
-    /// Fails if something cannot be obtained on this machine.
     pub fn cargo(self) -> anyhow::Result<Command> {
         let mut cargo = if self == Self::Native { cargo::cargo() } else { arm64::cargo()? };
         portable::set_flags(&mut cargo);
@@ -51,18 +48,12 @@ impl Machine {
     }
 
     /// Returns cargo's output folder.
-    ///
-    /// # Errors
-    /// Fails if the target folder is unknown.
     pub fn folder(self) -> anyhow::Result<PathBuf> {
         let target = target_folder()?;
         Ok(if self == Self::Native { target } else { target.join("android/arm64/capi") })
     }
 
     /// Removes symbols from a file.
-    ///
-    /// # Errors
-    /// Fails if the tool is missing or fails.
     pub fn strip(self, arguments: &[&str], file: &Path) -> anyhow::Result<()> {
         let strip = if self == Self::Native { "strip" } else { "llvm-strip" };
         run(Command::new(strip).args(arguments).arg(file)).map(drop)
@@ -70,9 +61,6 @@ impl Machine {
 
     /// Packs `NAME-VERSION-linux-ARCHITECTURE.tar.xz` in `folder`, and returns its path. `fill` writes the files, and returns
     /// the README. The licences, and the notices of what `package` contains, are written to `documents` in the archive.
-    ///
-    /// # Errors
-    /// Fails if `fill` fails, or a file cannot be written.
     pub fn pack(
         self,
         folder: &Path,

@@ -48,9 +48,6 @@ pub enum Target {
 }
 
 /// Makes these packages, or all if none is given, and returns their paths.
-///
-/// # Errors
-/// Fails if something is missing or does not compile.
 pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
     let targets = if targets.is_empty() { Target::value_variants() } else { targets };
     let folder = target_folder()?.join("package");
@@ -69,9 +66,6 @@ pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
 }
 
 /// Installs the tools by which people take the package for Linux into their programs.
-///
-/// # Errors
-/// Fails if one is missing that cannot be installed here.
 pub fn fetch_users_tools() -> anyhow::Result<PathBuf> {
     let needs = || {
         let tools: [(_, &[_]); 5] = [

@@ -56,9 +56,6 @@ const FILES: [(&str, &[(&str, &str)]); 4] = [
 ];
 
 /// Makes the bills, and returns their paths.
-///
-/// # Errors
-/// Fails if the tool cannot be installed, or fails.
 pub fn make(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let tool = cargo::install("cargo-cyclonedx", TOOL)?;
     // The tool writes beside the manifest of every package: into a copy.

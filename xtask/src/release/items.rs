@@ -51,9 +51,6 @@ impl Item {
     }
 
     /// Makes the item's files, and returns their paths. The site is a folder, and made of the others.
-    ///
-    /// # Errors
-    /// Fails if something is missing or does not compile.
     pub fn make(self) -> anyhow::Result<Vec<PathBuf>> {
         let folder = target_folder()?.join("package");
         make(&folder)?;
@@ -119,9 +116,6 @@ fn crates() -> anyhow::Result<Vec<PathBuf>> {
 
 impl Description {
     /// Returns the description of a file.
-    ///
-    /// # Errors
-    /// Fails if it is no file of a release.
     pub fn of(file: &Path) -> anyhow::Result<Self> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let rows =

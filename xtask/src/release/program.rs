@@ -15,9 +15,6 @@ use crate::package::texts::readme;
 use crate::{arm64, setup, web};
 
 /// Makes `yoro-VERSION-linux-ARCHITECTURE.tar.xz` with the page that `yoro serve` shows, and returns its path.
-///
-/// # Errors
-/// Fails if the program, the layer or the page does not compile, or the program renders nothing, for arm64 in qemu.
 pub fn archive(machine: Machine, folder: &Path) -> anyhow::Result<PathBuf> {
     setup::ensure()?;
     // A target folder of its own, since its flags differ from those of all other builds.

@@ -14,9 +14,6 @@ use super::bills::{ENDING, FORMAT};
 use super::items::Description;
 
 /// Returns the text for the files in a folder, which were built from a commit.
-///
-/// # Errors
-/// Fails if the folder cannot be read.
 pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
     let mut text = format!(
         "# yoro {VERSION}\n\

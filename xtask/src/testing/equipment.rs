@@ -183,9 +183,6 @@ pub struct Prepared(Vec<Made>);
 
 impl<'scope> Preparation<'scope> {
     /// Starts the preparation for the selected tests, or for all tests.
-    ///
-    /// # Errors
-    /// Fails if a library is missing that this program cannot install.
     pub fn begin(scope: &'scope Scope<'scope, '_>, programs: Option<&[Program]>) -> anyhow::Result<Self> {
         // sudo may ask for a password, and other systems get instructions: not in the background of cargo.
         if !apt::installs_by_itself() {
@@ -206,9 +203,6 @@ impl<'scope> Preparation<'scope> {
     }
 
     /// Waits for the system libraries, which all tests need.
-    ///
-    /// # Errors
-    /// Fails if one is missing.
     pub fn libraries(&mut self) -> anyhow::Result<Equipment> {
         let mut equipment = Equipment::default();
         if let Some(system) = self.system.take() {
@@ -226,9 +220,6 @@ impl<'scope> Preparation<'scope> {
     }
 
     /// Waits for the other items, and builds those that have to be built.
-    ///
-    /// # Errors
-    /// Fails if something cannot be built.
     pub fn finish(self) -> anyhow::Result<Prepared> {
         let mut prepared = Prepared::default();
         for (item, fetching) in self.items {

@@ -88,9 +88,6 @@ struct Plan {
 }
 
 /// Compiles and runs the selected tests of the workspace, or all, and prints a summary.
-///
-/// # Errors
-/// Fails if a test fails twice, does not compile, or none is selected.
 pub fn test(options: &Options) -> anyhow::Result<()> {
     let mut summary = Summary::begin();
     apt::install_missing(|| vec![setup::cpp()], true)?;

@@ -34,9 +34,6 @@ const SETTINGS: [(&str, &[u8]); 2] = [
 pub type Files = Vec<(String, Vec<u8>)>;
 
 /// Packs the files of a folder, sorted by name so that the same files result in the same archive.
-///
-/// # Errors
-/// Fails if a file cannot be read or written.
 pub fn pack(folder: &Path, packed: &Path) -> anyhow::Result<()> {
     let read = |(name, path): (String, _)| {
         let content = fs::read(&path).with_context(|| format!("{name} cannot be read"))?;
@@ -55,9 +52,6 @@ fn zip(files: &Files, packed: &Path) -> anyhow::Result<()> {
 }
 
 /// Returns the files in an archive.
-///
-/// # Errors
-/// Fails if it is damaged, or none.
 pub fn unzip(packed: &Path) -> anyhow::Result<Files> {
     let zip = ZipArchive::new(File::open(packed)?);
     let mut zip = zip.with_context(|| format!("{} is damaged, or no archive", packed.display()))?;
@@ -72,9 +66,6 @@ pub fn unzip(packed: &Path) -> anyhow::Result<Files> {
 }
 
 /// Makes an unsigned bundle from a finished APK.
-///
-/// # Errors
-/// Fails if aapt2 is missing or rejects the APK, or a file cannot be read or written.
 pub fn make(apk: &Path, bundle: &Path) -> anyhow::Result<()> {
     let converted = bundle.with_extension("proto.apk");
     convert("proto", apk, &converted)?;
@@ -96,9 +87,6 @@ fn place(name: &str) -> Option<String> {
 }
 
 /// Adds a row for the layout. Converts the module to an unsigned APK for the other checks, as bundletool would.
-///
-/// # Errors
-/// Fails if aapt2 is missing, or cannot read the manifest or the resources.
 pub fn check(files: Files, apk: &Path, report: &mut Report) -> anyhow::Result<()> {
     let is_in = |(wanted, bytes): &(&str, &[u8])| {
         files.iter().any(|(name, content)| name == wanted && content == bytes)

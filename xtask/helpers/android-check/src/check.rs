@@ -53,9 +53,6 @@ impl Report {
 
 /// Runs all checks on an APK or a bundle, apart from the rules `any-key` (it may be signed for debugging) and `any-size` (it
 /// may be as large as one that is not optimized as a whole).
-///
-/// # Errors
-/// Fails if the file is neither, or a tool for the checks is missing.
 pub fn check(path: &Path, store: Store, apart_from: &[&str]) -> anyhow::Result<Report> {
     let size = fs::metadata(path).with_context(|| format!("{} cannot be read", path.display()))?.len();
     let files = bundle::unzip(path)?;

@@ -33,9 +33,6 @@ pub fn check(name: &str, content: &[u8], architectures: &[Architecture], report:
 }
 
 /// Returns the folder of an OpenXR loader in an APK.
-///
-/// # Errors
-/// Fails if the file is not a loader, or is for an architecture that the APK has no libraries for.
 pub fn loader_abi(file: &Path) -> anyhow::Result<&'static str> {
     const ADVICE: &str =
         "take libopenxr_loader.so of Khronos' openxr_loader_for_android, jni/arm64-v8a in its AAR";

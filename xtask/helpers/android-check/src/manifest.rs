@@ -29,9 +29,6 @@ pub struct Manifest {
 
 impl Manifest {
     /// Reads an APK's manifest.
-    ///
-    /// # Errors
-    /// Fails if aapt2 is missing, or cannot read the manifest.
     pub fn read(apk: &Path) -> anyhow::Result<Self> {
         let aapt2 = sdk::build_tool("aapt2")?;
         let dump = |what: &[&str]| run(Command::new(&aapt2).arg("dump").args(what).arg(apk));

@@ -24,9 +24,6 @@ const PAGES: [(&str, &str); 6] = [
 ];
 
 /// Writes the first document and all that can be reached from it, with pictures and other files that they link to.
-///
-/// # Errors
-/// Fails if a document links to a file that does not exist, or a file cannot be written.
 pub fn write_all(site: &Path) -> anyhow::Result<()> {
     let out = site.join(FOLDER);
     let mut open = vec![PathBuf::from(FIRST)];

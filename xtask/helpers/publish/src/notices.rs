@@ -28,9 +28,6 @@ const MORE: [(&str, &str, &str); 1] =
     [("yoro-lenses", "The font B612 Mono (SIL Open Font License 1.1)", "app/vr/lenses/fonts/OFL.txt")];
 
 /// Returns the notices of all that a package for a target contains, built with these arguments of cargo's.
-///
-/// # Errors
-/// Fails if a licence is not accepted, or cargo fails.
 pub fn text(package: &str, target: &str, features: &[&str]) -> anyhow::Result<String> {
     let known = packages::all("Cargo.toml")?;
     let contained = packages::contained(package, target, features)?;

@@ -19,9 +19,6 @@ const NO_FILES: &str = "# Downloads\n\nThis copy of the site was made without th
                         makes them: [what to build for whom](guides/index.html#downloads).\n";
 
 /// Completes a folder that has the page and rustdoc. `release` is a folder with the files of a release.
-///
-/// # Errors
-/// Fails if a file is missing or cannot be written.
 pub fn complete(site: &Path, release: Option<&Path>) -> anyhow::Result<()> {
     guides::write_all(site)?;
     write(&site.join(guides::FOLDER).join("style.css"), style()?)?;
