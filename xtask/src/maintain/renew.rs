@@ -15,7 +15,16 @@ struct Generated {
 const GENERATED: [Generated; 3] = [
     Generated {
         what: "what is made of the synthesis shaders",
-        test: &["--package", "yoro", "--package", "yoro-wgpu", "--package", "yoro-three-tests", "--lib", "shaders"],
+        test: &[
+            "--package",
+            "yoro",
+            "--package",
+            "yoro-wgpu",
+            "--package",
+            "yoro-three-tests",
+            "--lib",
+            "shaders",
+        ],
         variable: "YORO_BLESS_SHADERS",
     },
     Generated {

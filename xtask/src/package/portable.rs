@@ -13,30 +13,8 @@ use crate::rust::anonymous_paths;
 /// The oldest supported glibc, which Debian 10, Ubuntu 18.10 and RHEL 8 have.
 pub const OLDEST_GLIBC: (u32, u32) = (2, 28);
 
-/// Rust's std calls `stat64` and `fstat64`, which glibc exports only since 2.33. The functions that older headers
-/// turned these calls into are still exported by newer versions. `gettid` exists since 2.30; std works without it, but
-/// LLD does not record that in the file.
-const OLD_FUNCTIONS: &str = r#"
-#if defined(__x86_64__)
-#define BASE "GLIBC_2.2.5"
-#define STAT_VERSION 1
-#define GETTID 186
-#elif defined(__aarch64__)
-#define BASE "GLIBC_2.17"
-#define STAT_VERSION 0
-#define GETTID 178
-#endif
-extern long syscall(long number, ...);
-extern int old_stat(int version, const char *path, void *result);
-extern int old_fstat(int version, int file, void *result);
-__asm__(".symver old_stat, __xstat64@" BASE);
-__asm__(".symver old_fstat, __fxstat64@" BASE);
-__attribute__((visibility("hidden"))) int stat64(const char *path, void *result) {
-  return old_stat(STAT_VERSION, path, result);
-}
-__attribute__((visibility("hidden"))) int fstat64(int file, void *result) { return old_fstat(STAT_VERSION, file, result); }
-__attribute__((visibility("hidden"))) int gettid(void) { return (int)syscall(GETTID); }
-"#;
+/// What Rust's std calls of newer versions, in terms of older functions.
+const OLD_FUNCTIONS: &str = include_str!("templates/old_functions.c");
 
 /// Compiles these functions with a C compiler and its arguments, and returns the object file.
 pub fn old_functions(compiler: &mut Command, folder: &Path) -> anyhow::Result<PathBuf> {

@@ -20,101 +20,70 @@ struct Item {
     what: &'static str,
     /// `YORO_TEST_variable` tells the tests its path. If `YORO_TEST_WITHOUT_variable` is set, the tests skip it.
     variable: &'static str,
-    /// The tests that need it: the package, and a part of the tests' names.
-    users: &'static [(&'static str, &'static str)],
+    /// The tests that need it: packages, each with a part of the tests' names.
+    users: &'static str,
     /// Installs and fetches it, or what it is built from. If this fails, its tests are skipped.
-    fetch: fn() -> anyhow::Result<PathBuf>,
+    fetch: Make,
     /// Builds it. If this fails, no tests run.
-    build: Option<fn() -> anyhow::Result<PathBuf>>,
+    build: Option<Make>,
 }
 
-/// A row of the table. The users are a package and a part of their names each.
-const fn item(
+type Make = fn() -> anyhow::Result<PathBuf>;
+
+const fn fetched(what: &'static str, variable: &'static str, users: &'static str, fetch: Make) -> Item {
+    Item { what, variable, users, fetch, build: None }
+}
+
+const fn built(
     what: &'static str,
     variable: &'static str,
-    users: &'static [(&'static str, &'static str)],
-    fetch: fn() -> anyhow::Result<PathBuf>,
-    build: Option<fn() -> anyhow::Result<PathBuf>>,
+    users: &'static str,
+    fetch: Make,
+    build: Make,
 ) -> Item {
-    Item { what, variable, users, fetch, build }
+    Item { what, variable, users, fetch, build: Some(build) }
 }
 
 static ITEMS: [Item; 13] = [
-    item(
-        "the page",
-        "WEB",
-        &[("yoro-cli", "web::")],
-        page_can_be_built,
-        Some(|| web::build().and(this_program())),
-    ),
-    item(
-        "the example of yoro-wgpu for browsers",
+    built("the page", "WEB", "yoro-cli web::", page_can_be_built, || web::build().and(this_program())),
+    built(
+        "the example of yoro-wgpu",
         "WGPU_WEB",
-        &[("yoro-wgpu", "the_example_in_a_browser")],
+        "yoro-wgpu the_example_in_a_browser",
         page_can_be_built,
-        Some(|| web::build_example().and(this_program())),
+        || web::build_example().and(this_program()),
     ),
-    item(
-        "the WebXR emulator",
-        "WEBXR",
-        &[("yoro-cli", "web::"), ("yoro-three-tests", "headsets")],
-        web::emulator,
-        None,
-    ),
-    item("three.js", "THREE", &[("yoro-three-tests", "")], web::three_modules, None),
+    fetched("the WebXR emulator", "WEBXR", "yoro-cli web::; yoro-three-tests headsets", web::emulator),
+    fetched("three.js", "THREE", "yoro-three-tests ", web::three_modules),
     // The names of the program's tests do not show which of them open a page.
-    item(
-        "Chromium",
-        "CHROMIUM",
-        &[("yoro-cli", ""), ("yoro-three-tests", "")],
-        || setup::browser().context("it cannot be installed"),
-        None,
-    ),
-    item("Monado", "MONADO", &[("yoro-cli", "monado")], monado::make, None),
+    fetched("Chromium", "CHROMIUM", "yoro-cli ; yoro-three-tests ", || {
+        setup::browser().context("it cannot be installed")
+    }),
+    fetched("Monado", "MONADO", "yoro-cli monado", monado::make),
     // Monado's drivers, and its launcher for this machine's programs.
-    item("Mesa 25", "MULTIVIEW", &[("yoro-tests", "multiview::")], || Ok(monado::make()?.join("run")), None),
-    item(
-        "hello_xr",
-        "HELLO_XR",
-        &[("yoro-openxr-layer", "hello_xr"), ("yoro-cli", "through_the_layer")],
-        hello_xr::make,
-        None,
-    ),
-    item(
-        "shader compilers for mobile GPUs",
-        "SHADER_COMPILERS",
-        &[("yoro-tests", "shader_cost::")],
-        || Ok(Compilers::make()?.folder().to_owned()),
-        None,
-    ),
-    item(
-        "the C library's package",
-        "C_PACKAGE",
-        &[("yoro-c", "the_package")],
-        package::fetch_users_tools,
-        Some(|| package::package(&[package::Target::Linux])?.pop().context("no package was made")),
-    ),
-    item(
+    fetched("Mesa 25", "MULTIVIEW", "yoro-tests multiview::", || Ok(monado::make()?.join("run"))),
+    fetched("hello_xr", "HELLO_XR", "yoro-openxr-layer hello_xr; yoro-cli through_the_layer", hello_xr::make),
+    fetched("shader compilers for mobile GPUs", "SHADER_COMPILERS", "yoro-tests shader_cost::", || {
+        Ok(Compilers::make()?.folder().to_owned())
+    }),
+    built("the C library's package", "C_PACKAGE", "yoro-c the_package", package::fetch_users_tools, || {
+        package::package(&[package::Target::Linux])?.pop().context("no package was made")
+    }),
+    built(
         "the APK (cargo xtask doctor)",
         "APK",
-        &[("yoro-android-host", "")],
+        "yoro-android-host ",
         android::ready_for_tests,
-        Some(android::apk_for_tests),
+        android::apk_for_tests,
     ),
-    item(
+    built(
         "the Android layer",
         "ANDROID_LAYER",
-        &[("yoro-android-host", "layer")],
+        "yoro-android-host layer",
         android::ready_for_tests,
-        Some(package::layer_for_tests),
+        package::layer_for_tests,
     ),
-    item(
-        "the simulated Android host for arm64",
-        "ARM64_HOST",
-        &[("yoro-android-host", "arm64")],
-        arm64::fetch,
-        Some(arm64::build_host),
-    ),
+    built("Android on arm64", "ARM64_HOST", "yoro-android-host arm64", arm64::fetch, arm64::build_host),
 ];
 
 fn this_program() -> anyhow::Result<PathBuf> {
@@ -127,7 +96,11 @@ fn page_can_be_built() -> anyhow::Result<PathBuf> {
 
 impl Item {
     fn is_for(&self, package: &str, test: &str) -> bool {
-        self.users.iter().any(|(user, part)| *user == package && test.contains(part))
+        self.users().any(|(user, part)| user == package && test.contains(part))
+    }
+
+    fn users(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        self.users.split("; ").filter_map(|user| user.split_once(' '))
     }
 }
 
@@ -138,13 +111,12 @@ pub fn is_needed(package: &str, test: &str) -> bool {
 
 /// Returns patterns in the table that match no test, for example because it was renamed.
 pub fn stale(programs: &[Program]) -> Vec<String> {
-    let users = ITEMS.iter().flat_map(|item| item.users);
     let fits = |(package, part): &(&str, &str)| {
-        programs
-            .iter()
-            .any(|(binary, names)| binary.package == *package && names.iter().any(|name| name.contains(part)))
+        let mut own = programs.iter().filter(|(binary, _)| binary.package == *package);
+        own.any(|(_, names)| names.iter().any(|name| name.contains(part)))
     };
-    users.filter(|user| !fits(user)).map(|(package, part)| format!("{package} {part}")).collect()
+    let users = ITEMS.iter().flat_map(Item::users).filter(|user| !fits(user));
+    users.map(|(package, part)| format!("{package} {part}")).collect()
 }
 
 /// Installations and downloads that are running in threads.
