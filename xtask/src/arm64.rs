@@ -8,9 +8,10 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 
 use crate::apt::{self, Need};
+use crate::cargo;
 use crate::folders::{make_once, target_folder};
 use crate::packages::{self, PrivateApt, quoted, write_launcher};
 use crate::rust::{Panic, Rust, build_std, source};
@@ -46,21 +47,10 @@ pub fn build_host() -> anyhow::Result<PathBuf> {
     let folder = folder()?;
     let system = System::make(&folder)?;
     let target = folder.join("build");
-    let mut cargo = command(&system, Panic::Abort)?;
-    cargo.args([
-        "build",
-        "--package",
-        "yoro-android-host",
-        "--package",
-        "yoro-openxr-stub",
-        "--target",
-        TRIPLE,
-    ]);
-    cargo.env("CARGO_TARGET_DIR", &target).env("CARGO_PROFILE_DEV_PANIC", "abort");
-    eprintln!("$ cargo build --package yoro-android-host --target {TRIPLE}");
-    if !cargo.status().context("cargo cannot be started")?.success() {
-        bail!("the simulated Android host does not compile for arm64: see above");
-    }
+    let mut build = command(&system, Panic::Abort)?;
+    build.args(["build", "--package=yoro-android-host", "--package=yoro-openxr-stub", "--target", TRIPLE]);
+    build.env("CARGO_TARGET_DIR", &target).env("CARGO_PROFILE_DEV_PANIC", "abort");
+    cargo::perform(&mut build, "the simulated Android host does not compile for arm64")?;
     let program = target.join(TRIPLE).join("debug/yoro-android-host");
     let launcher = folder.join("yoro-android-host");
     let words = system.arguments().map(|argument| quoted(Path::new(&argument)));

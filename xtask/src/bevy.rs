@@ -2,7 +2,6 @@
 
 use std::time::Instant;
 
-use anyhow::bail;
 use clap::Subcommand;
 
 use crate::folders::{make_parent, remove, root, target_folder};
@@ -58,19 +57,8 @@ fn perform(command: &str, more: &[&str], environment: &[(&str, &str)]) -> anyhow
     let manifest = root().join("app/engines/bevy/Cargo.toml").display().to_string();
     let target = target_folder()?.join("bevy").display().to_string();
     // All commands select the same features, so that nothing is compiled twice.
-    let mut arguments = vec![
-        command,
-        "--locked",
-        "--manifest-path",
-        &manifest,
-        "--target-dir",
-        &target,
-        "--features",
-        "openxr",
-    ];
-    arguments.extend(more);
-    if !cargo::succeeds(&arguments, environment) {
-        bail!("cargo {command} failed: see above");
-    }
-    Ok(())
+    let mut cargo = cargo::cargo();
+    cargo.args([command, "--locked", "--manifest-path", &manifest, "--target-dir", &target]);
+    cargo.args(["--features", "openxr"]).args(more).envs(environment.iter().copied());
+    cargo::perform(&mut cargo, &format!("cargo {command} failed"))
 }

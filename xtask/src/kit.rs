@@ -2,8 +2,6 @@
 
 use std::path::PathBuf;
 
-use anyhow::bail;
-
 use crate::cargo;
 use crate::folders::target_folder;
 
@@ -11,9 +9,8 @@ use crate::folders::target_folder;
 pub fn kit() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("kit");
     let path = folder.display().to_string();
-    if !cargo::succeeds(&["run", "--quiet", "--package", "yoro-c", "--example", "kit", "--", &path], &[]) {
-        bail!("the kit cannot be written: see above");
-    }
+    let arguments = ["run", "--quiet", "--package", "yoro-c", "--example", "kit", "--", &path];
+    cargo::perform(cargo::cargo().args(arguments), "the kit cannot be written")?;
     println!("{path}");
     Ok(folder)
 }

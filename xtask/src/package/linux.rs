@@ -15,7 +15,7 @@ use crate::{arm64, cargo, notices};
 
 use super::portable::{self, OLDEST_GLIBC};
 use super::texts::{cmake, cmake_version, manual, pkg_config, readme, soname, with_links};
-use super::{VERSION, build};
+use super::{VERSION, build, copy_licences};
 
 /// The first page of the C library's archive.
 const README: &str = include_str!("templates/README.library.txt");
@@ -76,9 +76,7 @@ impl Machine {
         let readme = fill(&content)?;
         write(&content.join("README.md"), readme)?;
         let documents = content.join(documents);
-        for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
-            copy(&root().join(licence), &documents.join(licence))?;
-        }
+        copy_licences(&documents)?;
         let notices = notices::text(package, &format!("{architecture}-unknown-linux-gnu"), &[])?;
         write(&documents.join(notices::FILE), notices)?;
         let packed = tar(folder, &name)?;

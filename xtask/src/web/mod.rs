@@ -12,10 +12,9 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail, ensure};
 
-use crate::cargo::{self, announce};
 use crate::folders::{copy, remove, root, target_folder, write};
 use crate::rust::{Panic, Rust, anonymous_paths, build_std};
-use crate::{console, notices};
+use crate::{cargo, console, notices};
 
 pub use npm::{check_types, emulator, npm, three as three_modules};
 pub use serve::serve;
@@ -134,10 +133,7 @@ fn compile(what: &[&str], name: &str) -> anyhow::Result<PathBuf> {
     let linker = rust.wasm_linker().context("there is no linker for WebAssembly: apt-get install lld")?;
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
     command.env("CARGO_ENCODED_RUSTFLAGS", anonymous_paths().unwrap_or_default());
-    announce(&arguments);
-    if !command.status().context("cargo cannot be started")?.success() {
-        bail!("the module does not compile: see above");
-    }
+    cargo::perform(&mut command, "the module does not compile")?;
     Ok(target.join(TRIPLE).join("web").join(name).with_extension("wasm"))
 }
 
