@@ -134,11 +134,4 @@ mod tests {
         assert!(first == packed([names[1], names[0]]));
         assert_eq!(first.1, names.map(|name| (name.to_owned(), name.as_bytes().to_owned())));
     }
-
-    #[test]
-    fn bundles_have_their_own_places() {
-        assert_eq!(place("AndroidManifest.xml").as_deref(), Some(MANIFEST));
-        assert_eq!(place("lib/x86_64/liba.so").as_deref(), Some("base/lib/x86_64/liba.so"));
-        assert_eq!((place("META-INF/CERT.SF"), place("other.txt")), (None, None));
-    }
 }
