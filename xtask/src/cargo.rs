@@ -29,9 +29,6 @@ pub fn announce(arguments: &[&str]) {
 }
 
 /// Runs cargo in the user's folder. If it fails, this process exits with the same code.
-///
-/// # Errors
-/// Fails if cargo cannot be started.
 pub fn run(arguments: &[&str], more: &[String]) -> anyhow::Result<()> {
     // The user's paths are relative to the user's current folder.
     let here = env::current_dir().context("the current folder is gone: change to another")?;
@@ -51,9 +48,6 @@ pub fn run(arguments: &[&str], more: &[String]) -> anyhow::Result<()> {
 }
 
 /// Builds a program of the workspace, and returns the command that runs it in the workspace's root.
-///
-/// # Errors
-/// Fails if it does not compile.
 pub fn program(name: &str) -> anyhow::Result<Command> {
     // The features of the whole workspace, so that dependencies shared with the tests are not compiled twice.
     let arguments = ["build", "--quiet", "--workspace", "--bin", name];
@@ -65,9 +59,6 @@ pub fn program(name: &str) -> anyhow::Result<Command> {
 
 /// Runs a helper, which is a program of its own so that only those compile its dependencies who need it. Returns its
 /// output, and true if it found no fault.
-///
-/// # Errors
-/// Fails if it does not compile, or with its own message.
 pub fn helper(name: &str, arguments: &[&str]) -> anyhow::Result<(String, bool)> {
     let output = program(name)?.args(arguments).output();
     let output = output.with_context(|| format!("{name} cannot be started"))?;
@@ -78,9 +69,6 @@ pub fn helper(name: &str, arguments: &[&str]) -> anyhow::Result<(String, bool)> 
 }
 
 /// Installs a version of a program that cargo runs as `cargo NAME` in the project's own folder, and returns its path.
-///
-/// # Errors
-/// Fails if it cannot be installed.
 pub fn install(name: &str, version: &str) -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("tools");
     let (program, stamp) = (folder.join("bin").join(name), folder.join(name).with_extension(version));
@@ -106,9 +94,6 @@ pub fn succeeds(arguments: &[&str], environment: &[(&str, &str)]) -> bool {
 }
 
 /// Prints and runs a command of cargo's.
-///
-/// # Errors
-/// Fails with this sentence if cargo does.
 pub fn perform(command: &mut Command, failure: &str) -> anyhow::Result<()> {
     let arguments: Vec<_> = command.get_args().map(|argument| argument.to_string_lossy()).collect();
     announce(&arguments.iter().map(|argument| &**argument).collect::<Vec<_>>());
@@ -118,9 +103,6 @@ pub fn perform(command: &mut Command, failure: &str) -> anyhow::Result<()> {
 }
 
 /// Runs cargo, and returns its standard output. Its messages go to standard error.
-///
-/// # Errors
-/// Fails if cargo fails.
 pub fn output(arguments: &[&str]) -> anyhow::Result<String> {
     let output = cargo().args(arguments).stdin(Stdio::null()).stderr(Stdio::inherit()).output();
     let output = output.context("cargo cannot be started")?;

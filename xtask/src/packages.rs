@@ -149,6 +149,12 @@ pub fn quoted(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
 }
 
+/// Writes an executable shell script, with values for the names that are written `@NAME@` in its template.
+pub fn fill_launcher(launcher: &Path, template: &str, values: &[(&str, &str)]) -> anyhow::Result<()> {
+    let replace = |text: String, (name, value): &(&str, &str)| text.replace(&format!("@{name}@"), value);
+    write_launcher(launcher, &values.iter().fold(template.to_owned(), replace))
+}
+
 /// Writes an executable shell script.
 pub fn write_launcher(launcher: &Path, text: &str) -> anyhow::Result<()> {
     write(launcher, format!("#!/bin/sh\n{text}"))?;
