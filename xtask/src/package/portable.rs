@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
+use anyhow::ensure;
 
 use crate::console::run;
 use crate::folders::{read, root, write};
@@ -34,41 +34,32 @@ pub fn set_flags(cargo: &mut Command) {
 
 /// Checks that a library runs with the oldest supported glibc, and contains none of the builder's folders.
 pub fn check(file: &Path) -> anyhow::Result<()> {
-    let content = read(file)?;
-    let newest = newest_glibc(&content);
-    if newest.is_some_and(|newest| newest > OLDEST_GLIBC) {
-        let ((major, minor), (old_major, old_minor)) = (newest.unwrap_or_default(), OLDEST_GLIBC);
-        bail!(
-            "{} needs glibc {major}.{minor}, newer than {old_major}.{old_minor}: `objdump -T` names the functions; give \
-             older ones in xtask/src/package/portable.rs",
-            file.display()
-        );
-    }
-    check_folders(file, &content)
-}
-
-/// Checks that a program or a library contains none of the builder's folders, and returns the oldest glibc that it runs
-/// with.
-pub fn needed_glibc(file: &Path) -> anyhow::Result<(u32, u32)> {
-    let content = read(file)?;
-    check_folders(file, &content)?;
-    newest_glibc(&content).with_context(|| format!("{} names no version of glibc", file.display()))
-}
-
-fn check_folders(file: &Path, content: &[u8]) -> anyhow::Result<()> {
-    let home = std::env::home_dir();
-    for folder in [Some(root()), home.as_deref().map(Path::to_owned)].into_iter().flatten() {
-        let name = folder.to_string_lossy().into_owned();
-        // A home such as / or /root does not identify anybody, only folders in it do.
-        if holds(content, format!("{name}/").as_bytes()) {
-            bail!("{} holds the builder's folder {name}: remap it", file.display());
-        }
-    }
+    let (major, minor) = needed_glibc(file)?;
+    ensure!(
+        (major, minor) <= OLDEST_GLIBC,
+        "{} needs glibc {major}.{minor}, which is too new: `objdump -T` names the functions; give older ones in \
+         xtask/src/package/templates/old_functions.c",
+        file.display()
+    );
     Ok(())
 }
 
-fn holds(content: &[u8], text: &[u8]) -> bool {
-    content.windows(text.len()).any(|window| window == text)
+/// Checks that a program or a library contains none of the builder's folders, and returns the oldest glibc that it runs
+/// with: any if it names none.
+pub fn needed_glibc(file: &Path) -> anyhow::Result<(u32, u32)> {
+    let content = read(file)?;
+    check_folders(file, &content)?;
+    Ok(newest_glibc(&content).unwrap_or_default())
+}
+
+fn check_folders(file: &Path, content: &[u8]) -> anyhow::Result<()> {
+    for folder in [root()].into_iter().chain(std::env::home_dir()) {
+        // A home such as / or /root does not identify anybody, only folders in it do.
+        let name = format!("{}/", folder.display());
+        let is_in = content.windows(name.len()).any(|window| window == name.as_bytes());
+        ensure!(!is_in, "{} holds the builder's folder {name}: remap it", file.display());
+    }
+    Ok(())
 }
 
 /// Returns the newest glibc version among a library's dynamic symbols.

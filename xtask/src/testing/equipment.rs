@@ -10,7 +10,6 @@ use anyhow::{Context as _, anyhow, bail};
 use crate::maintain::estimate::Compilers;
 
 use super::binaries::Program;
-use super::summary::Summary;
 use crate::maintain::{hello_xr, monado};
 use crate::{android, apt, arm64, package, setup, web};
 
@@ -121,37 +120,20 @@ pub fn stale(programs: &[Program]) -> Vec<String> {
 
 /// Installations and downloads that are running in threads.
 pub struct Preparation<'scope> {
-    system: Option<ScopedJoinHandle<'scope, anyhow::Result<Libraries>>>,
+    system: Option<ScopedJoinHandle<'scope, anyhow::Result<Equipment>>>,
     items: Vec<(&'static Item, ScopedJoinHandle<'scope, anyhow::Result<PathBuf>>)>,
 }
 
-/// The optional system libraries, true if available.
-#[derive(Clone, Copy, Debug, Default)]
-struct Libraries {
-    osmesa: bool,
-    vulkan: bool,
-}
-
-/// The equipment available on this machine.
+/// The equipment of this machine.
 #[derive(Debug, Default)]
 pub struct Equipment {
-    libraries: Libraries,
     /// Paths by variable; `None` if the item is not available.
     items: Vec<(&'static str, Option<PathBuf>)>,
     /// A sentence for each item that is not available.
     pub absent: Vec<String>,
+    /// How long each item was built, in seconds.
+    pub seconds: Vec<(&'static str, f64)>,
 }
-
-/// An item that was fetched and built, if it is available here.
-struct Made {
-    item: &'static Item,
-    path: Option<PathBuf>,
-    seconds: f64,
-}
-
-/// What was fetched and built.
-#[derive(Default)]
-pub struct Prepared(Vec<Made>);
 
 impl<'scope> Preparation<'scope> {
     /// Starts the preparation for the selected tests, or for all tests.
@@ -160,7 +142,12 @@ impl<'scope> Preparation<'scope> {
         if !apt::installs_by_itself() {
             setup::ensure()?;
         }
-        let libraries = || Ok(Libraries { osmesa: setup::ensure()?, vulkan: setup::vulkan() });
+        let libraries = || {
+            let mut equipment = Equipment::default();
+            equipment.add("OSMesa", "OSMESA", setup::ensure()?.then(PathBuf::new));
+            equipment.add("Vulkan or its validation layer", "VULKAN", setup::vulkan().then(PathBuf::new));
+            Ok(equipment)
+        };
         let wanted = |item: &&Item| match programs {
             None => true,
             // A few selected tests are not worth the wait for a browser, so they only use an installed one.
@@ -176,24 +163,12 @@ impl<'scope> Preparation<'scope> {
 
     /// Waits for the system libraries, which all tests need.
     pub fn libraries(&mut self) -> anyhow::Result<Equipment> {
-        let mut equipment = Equipment::default();
-        if let Some(system) = self.system.take() {
-            equipment.libraries = join(system)?;
-        }
-        for (here, what) in [
-            (equipment.libraries.osmesa, "OSMesa"),
-            (equipment.libraries.vulkan, "Vulkan or its validation layer"),
-        ] {
-            if !here {
-                equipment.absent.push(format!("{what} is not here: what needs it was left out"));
-            }
-        }
-        Ok(equipment)
+        self.system.take().map_or_else(|| Ok(Equipment::default()), join)
     }
 
     /// Waits for the other items, and builds those that have to be built.
-    pub fn finish(self) -> anyhow::Result<Prepared> {
-        let mut prepared = Prepared::default();
+    pub fn finish(self) -> anyhow::Result<Equipment> {
+        let mut equipment = Equipment::default();
         for (item, fetching) in self.items {
             let fetched = join(fetching);
             let start = Instant::now();
@@ -201,13 +176,14 @@ impl<'scope> Preparation<'scope> {
                 (Ok(_), Some(build)) => Some(build()?),
                 (Ok(path), None) => Some(path),
                 (Err(error), _) => {
-                    eprintln!("warning: {} cannot be had here: its tests are left out: {error:#}", item.what);
+                    eprintln!("warning: {}: {error:#}", item.what);
                     None
                 }
             };
-            prepared.0.push(Made { item, path, seconds: start.elapsed().as_secs_f64() });
+            equipment.add(item.what, item.variable, path);
+            equipment.seconds.push((item.what, start.elapsed().as_secs_f64()));
         }
-        Ok(prepared)
+        Ok(equipment)
     }
 }
 
@@ -216,25 +192,21 @@ fn join<T>(handle: ScopedJoinHandle<'_, anyhow::Result<T>>) -> anyhow::Result<T>
 }
 
 impl Equipment {
-    /// Adds what was prepared.
-    pub fn add(&mut self, prepared: Prepared, summary: &mut Summary) {
-        for Made { item, path, seconds } in prepared.0 {
-            summary.add_phase(&format!("  of it {}", item.what), seconds);
-            if path.is_none() {
-                self.absent.push(format!("{} cannot be had here: its tests were left out", item.what));
-            }
-            self.items.push((item.variable, path));
+    fn add(&mut self, what: &str, variable: &'static str, path: Option<PathBuf>) {
+        if path.is_none() {
+            self.absent.push(format!("{what} cannot be had here: its tests were left out"));
         }
+        self.items.push((variable, path));
+    }
+
+    /// Adds what was prepared meanwhile.
+    pub fn extend(&mut self, other: Self) {
+        self.items.extend(other.items);
+        self.absent.extend(other.absent);
     }
 
     /// Sets the variables that tell a test program what is available.
     pub fn set_variables(&self, command: &mut Command) {
-        if !self.libraries.osmesa {
-            command.env("YORO_TEST_WITHOUT_OSMESA", "1");
-        }
-        if !self.libraries.vulkan {
-            command.env("YORO_TEST_WITHOUT_VULKAN", "1");
-        }
         for (variable, path) in &self.items {
             match path {
                 Some(path) => command.env(format!("YORO_TEST_{variable}"), path),
@@ -262,14 +234,11 @@ mod tests {
 
     #[test]
     fn variables_say_what_is_here_and_what_is_not() {
-        let equipment = Equipment {
-            libraries: Libraries { osmesa: true, vulkan: false },
-            items: vec![("APK", Some("yoro.apk".into())), ("MONADO", None)],
-            ..Equipment::default()
-        };
+        let items = vec![("APK", Some("yoro.apk".into())), ("MONADO", None)];
+        let equipment = Equipment { items, ..Equipment::default() };
         let mut command = Command::new("test");
         equipment.set_variables(&mut command);
         let set: Vec<_> = command.get_envs().filter_map(|(name, _)| name.to_str()).collect();
-        assert_eq!(set, ["YORO_TEST_APK", "YORO_TEST_WITHOUT_MONADO", "YORO_TEST_WITHOUT_VULKAN"]);
+        assert_eq!(set, ["YORO_TEST_APK", "YORO_TEST_WITHOUT_MONADO"]);
     }
 }
