@@ -56,9 +56,6 @@ impl Need {
 }
 
 /// Installs what is missing. Asks first unless `yes`.
-///
-/// # Errors
-/// Fails if something is still missing; the error names it and the remedy.
 pub fn install_missing(needs: impl Fn() -> Vec<Need>, yes: bool) -> anyhow::Result<()> {
     /// Locked so that a second thread does not miss packages that the first one is installing.
     static PROVIDING: Mutex<()> = Mutex::new(());
@@ -94,9 +91,6 @@ pub fn installs_by_itself() -> bool {
 }
 
 /// Asks whether to install packages, unless `yes`.
-///
-/// # Errors
-/// Fails if nobody can be asked, or the answer is no. The error names the remedy.
 fn consent(packages: &[&str], yes: bool) -> anyhow::Result<()> {
     let list = packages.join(" ");
     if yes {
@@ -117,9 +111,6 @@ fn consent(packages: &[&str], yes: bool) -> anyhow::Result<()> {
 
 /// Runs `apt-get update`, then installs each group separately, so that a package that this distribution does not have
 /// only affects its own group. Never removes installed packages.
-///
-/// # Errors
-/// Fails without root's rights, or if apt-get fails with one of the groups.
 pub fn install(groups: &[&[&str]]) -> anyhow::Result<()> {
     let by_hand = format!("apt-get install {}", groups.concat().join(" "));
     let sudo = match (is_root(), find_program("sudo")) {

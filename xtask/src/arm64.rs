@@ -8,9 +8,10 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 
 use crate::apt::{self, Need};
+use crate::cargo;
 use crate::folders::{make_once, target_folder};
 use crate::packages::{self, PrivateApt, quoted, write_launcher};
 use crate::rust::{Panic, Rust, build_std, source};
@@ -24,9 +25,6 @@ const LIBSTDCXX: &str = "libstdc++-";
 const QEMU: [&str; 2] = ["usr/bin/qemu-aarch64-static", "usr/bin/qemu-aarch64"];
 
 /// Installs what compiling for arm64 needs, without asking, and fetches what its programs need. Returns the folder.
-///
-/// # Errors
-/// Fails if something cannot be obtained on this machine.
 pub fn fetch() -> anyhow::Result<PathBuf> {
     let needs = || {
         let rust = Rust::for_target(TRIPLE).map(|(rust, _)| rust);
@@ -45,28 +43,14 @@ pub fn fetch() -> anyhow::Result<PathBuf> {
 }
 
 /// Compiles the simulated Android host, and returns its launcher: `launcher APK SCRIPT ...`.
-///
-/// # Errors
-/// Fails if the host does not compile.
 pub fn build_host() -> anyhow::Result<PathBuf> {
     let folder = folder()?;
     let system = System::make(&folder)?;
     let target = folder.join("build");
-    let mut cargo = command(&system, Panic::Abort)?;
-    cargo.args([
-        "build",
-        "--package",
-        "yoro-android-host",
-        "--package",
-        "yoro-openxr-stub",
-        "--target",
-        TRIPLE,
-    ]);
-    cargo.env("CARGO_TARGET_DIR", &target).env("CARGO_PROFILE_DEV_PANIC", "abort");
-    eprintln!("$ cargo build --package yoro-android-host --target {TRIPLE}");
-    if !cargo.status().context("cargo cannot be started")?.success() {
-        bail!("the simulated Android host does not compile for arm64: see above");
-    }
+    let mut build = command(&system, Panic::Abort)?;
+    build.args(["build", "--package=yoro-android-host", "--package=yoro-openxr-stub", "--target", TRIPLE]);
+    build.env("CARGO_TARGET_DIR", &target).env("CARGO_PROFILE_DEV_PANIC", "abort");
+    cargo::perform(&mut build, "the simulated Android host does not compile for arm64")?;
     let program = target.join(TRIPLE).join("debug/yoro-android-host");
     let launcher = folder.join("yoro-android-host");
     let words = system.arguments().map(|argument| quoted(Path::new(&argument)));
@@ -138,9 +122,6 @@ fn newest(names: &str) -> Option<String> {
 }
 
 /// Returns the command that runs a program for arm64 in qemu, with Mesa's rasterizer.
-///
-/// # Errors
-/// Fails if something cannot be obtained on this machine.
 pub fn emulated(program: &Path) -> anyhow::Result<Command> {
     let system = System::make(&fetch()?)?;
     let mut command = Command::new(&system.qemu);
@@ -150,9 +131,6 @@ pub fn emulated(program: &Path) -> anyhow::Result<Command> {
 
 /// Returns a cargo that compiles and links for arm64 with `--target` [`TRIPLE`]. Fetches and installs what it needs.
 /// Panics in its programs unwind.
-///
-/// # Errors
-/// Fails if something cannot be obtained on this machine.
 pub fn cargo() -> anyhow::Result<Command> {
     command(&System::make(&fetch()?)?, Panic::Unwind)
 }

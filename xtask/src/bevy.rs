@@ -2,7 +2,6 @@
 
 use std::time::Instant;
 
-use anyhow::bail;
 use clap::Subcommand;
 
 use crate::folders::{make_parent, remove, root, target_folder};
@@ -18,9 +17,6 @@ pub enum Task {
 }
 
 /// Runs the example without a window.
-///
-/// # Errors
-/// Fails if the example fails.
 pub fn run() -> anyhow::Result<()> {
     setup::vulkan();
     let folder = root().join("out/bevy").display().to_string();
@@ -28,9 +24,6 @@ pub fn run() -> anyhow::Result<()> {
 }
 
 /// Runs all tests. Without Monado, its tests are skipped with a message.
-///
-/// # Errors
-/// Fails if a test fails.
 pub fn test() -> anyhow::Result<()> {
     let start = Instant::now();
     setup::vulkan();
@@ -64,19 +57,8 @@ fn perform(command: &str, more: &[&str], environment: &[(&str, &str)]) -> anyhow
     let manifest = root().join("app/engines/bevy/Cargo.toml").display().to_string();
     let target = target_folder()?.join("bevy").display().to_string();
     // All commands select the same features, so that nothing is compiled twice.
-    let mut arguments = vec![
-        command,
-        "--locked",
-        "--manifest-path",
-        &manifest,
-        "--target-dir",
-        &target,
-        "--features",
-        "openxr",
-    ];
-    arguments.extend(more);
-    if !cargo::succeeds(&arguments, environment) {
-        bail!("cargo {command} failed: see above");
-    }
-    Ok(())
+    let mut cargo = cargo::cargo();
+    cargo.args([command, "--locked", "--manifest-path", &manifest, "--target-dir", &target]);
+    cargo.args(["--features", "openxr"]).args(more).envs(environment.iter().copied());
+    cargo::perform(&mut cargo, &format!("cargo {command} failed"))
 }

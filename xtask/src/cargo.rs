@@ -4,7 +4,7 @@ use std::env;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, bail, ensure};
 
 use crate::folders::{root, target_folder, write};
 
@@ -29,9 +29,6 @@ pub fn announce(arguments: &[&str]) {
 }
 
 /// Runs cargo in the user's folder. If it fails, this process exits with the same code.
-///
-/// # Errors
-/// Fails if cargo cannot be started.
 pub fn run(arguments: &[&str], more: &[String]) -> anyhow::Result<()> {
     // The user's paths are relative to the user's current folder.
     let here = env::current_dir().context("the current folder is gone: change to another")?;
@@ -51,14 +48,10 @@ pub fn run(arguments: &[&str], more: &[String]) -> anyhow::Result<()> {
 }
 
 /// Builds a program of the workspace, and returns the command that runs it in the workspace's root.
-///
-/// # Errors
-/// Fails if it does not compile.
 pub fn program(name: &str) -> anyhow::Result<Command> {
     // The features of the whole workspace, so that dependencies shared with the tests are not compiled twice.
-    if !succeeds(&["build", "--quiet", "--workspace", "--bin", name], &[]) {
-        bail!("{name} does not compile: see above");
-    }
+    let arguments = ["build", "--quiet", "--workspace", "--bin", name];
+    perform(cargo().args(arguments), &format!("{name} does not compile"))?;
     let mut command = Command::new(target_folder()?.join("debug").join(name));
     command.current_dir(root());
     Ok(command)
@@ -66,9 +59,6 @@ pub fn program(name: &str) -> anyhow::Result<Command> {
 
 /// Runs a helper, which is a program of its own so that only those compile its dependencies who need it. Returns its
 /// output, and true if it found no fault.
-///
-/// # Errors
-/// Fails if it does not compile, or with its own message.
 pub fn helper(name: &str, arguments: &[&str]) -> anyhow::Result<(String, bool)> {
     let output = program(name)?.args(arguments).output();
     let output = output.with_context(|| format!("{name} cannot be started"))?;
@@ -79,9 +69,6 @@ pub fn helper(name: &str, arguments: &[&str]) -> anyhow::Result<(String, bool)> 
 }
 
 /// Installs a version of a program that cargo runs as `cargo NAME` in the project's own folder, and returns its path.
-///
-/// # Errors
-/// Fails if it cannot be installed.
 pub fn install(name: &str, version: &str) -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("tools");
     let (program, stamp) = (folder.join("bin").join(name), folder.join(name).with_extension(version));
@@ -92,26 +79,30 @@ pub fn install(name: &str, version: &str) -> anyhow::Result<PathBuf> {
     // A debug build: it runs for seconds, so that optimizing it would take longer than it saves.
     let arguments = ["install", name, "--version", version, "--locked", "--debug", "--force", "--quiet"];
     let arguments = [&arguments[..], &["--no-track", "--root", &place]].concat();
-    announce(&arguments);
     // A target folder of its own, so that the workspace's has no files that only this program needs.
-    let status = cargo().args(arguments).env_remove("CARGO_TARGET_DIR").status();
-    if !status.context("cargo cannot be started")?.success() {
-        bail!("{name} {version} cannot be installed: see above");
-    }
+    let mut command = cargo();
+    command.args(arguments).env_remove("CARGO_TARGET_DIR");
+    perform(&mut command, &format!("{name} {version} cannot be installed"))?;
     write(&stamp, "")?;
     Ok(program)
 }
 
 /// Runs cargo, and returns true if it succeeds.
 pub fn succeeds(arguments: &[&str], environment: &[(&str, &str)]) -> bool {
-    announce(arguments);
-    cargo().args(arguments).envs(environment.iter().copied()).status().is_ok_and(|status| status.success())
+    let mut command = cargo();
+    perform(command.args(arguments).envs(environment.iter().copied()), "").is_ok()
+}
+
+/// Prints and runs a command of cargo's.
+pub fn perform(command: &mut Command, failure: &str) -> anyhow::Result<()> {
+    let arguments: Vec<_> = command.get_args().map(|argument| argument.to_string_lossy()).collect();
+    announce(&arguments.iter().map(|argument| &**argument).collect::<Vec<_>>());
+    let status = command.status().context("cargo cannot be started")?;
+    ensure!(status.success(), "{failure}: see above");
+    Ok(())
 }
 
 /// Runs cargo, and returns its standard output. Its messages go to standard error.
-///
-/// # Errors
-/// Fails if cargo fails.
 pub fn output(arguments: &[&str]) -> anyhow::Result<String> {
     let output = cargo().args(arguments).stdin(Stdio::null()).stderr(Stdio::inherit()).output();
     let output = output.context("cargo cannot be started")?;

@@ -10,6 +10,16 @@ pub fn print(text: &str) {
     let _ = io::stdout().write_all(text.as_bytes());
 }
 
+/// Runs a helper with the command line's arguments. `perform` returns the text to print, and false if a check has failed.
+pub fn main(perform: impl FnOnce(&[&str]) -> anyhow::Result<(String, bool)>) -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    exit_code(perform(&arguments).map(|(text, passed)| {
+        print(&text);
+        passed
+    }))
+}
+
 /// Returns 0 for `true`, 1 for `false`, and 2 for an error, which is printed to standard error.
 pub fn exit_code(outcome: anyhow::Result<bool>) -> ExitCode {
     match outcome {
@@ -23,9 +33,6 @@ pub fn exit_code(outcome: anyhow::Result<bool>) -> ExitCode {
 }
 
 /// Runs a program, and returns its standard output.
-///
-/// # Errors
-/// Fails if the program is missing, or fails; the error has what it printed.
 pub fn run(command: &mut Command) -> anyhow::Result<String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command.output().with_context(|| format!("{program} cannot be started: install it"))?;

@@ -13,9 +13,6 @@ pub fn root() -> PathBuf {
 }
 
 /// Returns cargo's target folder, found from this program's own path, `target/debug/xtask`.
-///
-/// # Errors
-/// Fails if this program is not in a target folder.
 pub fn target_folder() -> anyhow::Result<PathBuf> {
     let program = std::env::current_exe().context("this program does not know where it lies")?;
     let folder = program.ancestors().nth(2).context("this program lies in no target folder")?;
@@ -23,9 +20,6 @@ pub fn target_folder() -> anyhow::Result<PathBuf> {
 }
 
 /// Makes a folder with `make`, unless it exists and was made by the same `recipe`. Removes an outdated one first.
-///
-/// # Errors
-/// Fails if `make` fails or the folder cannot be removed.
 pub fn make_once(
     folder: &Path,
     recipe: &str,
@@ -41,9 +35,6 @@ pub fn make_once(
 }
 
 /// Removes a folder if it exists.
-///
-/// # Errors
-/// Fails if the folder cannot be removed.
 pub fn remove(folder: &Path) -> anyhow::Result<()> {
     if folder.exists() {
         fs::remove_dir_all(folder)
@@ -54,9 +45,6 @@ pub fn remove(folder: &Path) -> anyhow::Result<()> {
 
 /// Writes a file, and makes its parent folders. The file is always complete, even if several processes and threads
 /// write it at the same time.
-///
-/// # Errors
-/// Fails if the file cannot be written.
 pub fn write(file: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
     static WRITTEN: AtomicUsize = AtomicUsize::new(0);
     let number = WRITTEN.fetch_add(1, Ordering::Relaxed);
@@ -68,9 +56,6 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
 }
 
 /// Copies a file, and makes the parent folders of the copy.
-///
-/// # Errors
-/// Fails if the file cannot be copied.
 pub fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     make_parent(to)?;
     fs::copy(from, to).with_context(|| format!("{} cannot be copied to {}", from.display(), to.display()))?;
@@ -78,17 +63,11 @@ pub fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
 }
 
 /// Copies a folder and the folders in it.
-///
-/// # Errors
-/// Fails if something in it cannot be copied.
 pub fn copy_folder(from: &Path, to: &Path) -> anyhow::Result<()> {
     files(from)?.into_iter().try_for_each(|(name, path)| copy(&path, &to.join(name)))
 }
 
 /// Returns the names, relative to a folder, and the paths of all files in it and in its folders, sorted by name.
-///
-/// # Errors
-/// Fails if a folder cannot be read.
 pub fn files(folder: &Path) -> anyhow::Result<Vec<(String, PathBuf)>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))? {
@@ -105,33 +84,21 @@ pub fn files(folder: &Path) -> anyhow::Result<Vec<(String, PathBuf)>> {
 }
 
 /// Makes a folder and its parents.
-///
-/// # Errors
-/// Fails if it cannot be made.
 pub fn make(folder: &Path) -> anyhow::Result<()> {
     fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))
 }
 
 /// Makes the parent folders of a file.
-///
-/// # Errors
-/// Fails if they cannot be made.
 pub fn make_parent(file: &Path) -> anyhow::Result<()> {
     file.parent().map_or(Ok(()), make)
 }
 
 /// Returns the content of a file.
-///
-/// # Errors
-/// Fails if the file cannot be read.
 pub fn read(file: &Path) -> anyhow::Result<Vec<u8>> {
     fs::read(file).with_context(|| format!("{} cannot be read", file.display()))
 }
 
 /// Returns the text in a file.
-///
-/// # Errors
-/// Fails if the file cannot be read, or is no text.
 pub fn read_text(file: &Path) -> anyhow::Result<String> {
     fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))
 }

@@ -2,21 +2,15 @@
 
 use std::path::PathBuf;
 
-use anyhow::bail;
-
 use crate::cargo;
 use crate::folders::target_folder;
 
 /// Writes the kit to `target/kit`, and returns the folder.
-///
-/// # Errors
-/// Fails if the program that writes it does not compile, or the folder cannot be written.
 pub fn kit() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("kit");
     let path = folder.display().to_string();
-    if !cargo::succeeds(&["run", "--quiet", "--package", "yoro-c", "--example", "kit", "--", &path], &[]) {
-        bail!("the kit cannot be written: see above");
-    }
+    let arguments = ["run", "--quiet", "--package", "yoro-c", "--example", "kit", "--", &path];
+    cargo::perform(cargo::cargo().args(arguments), "the kit cannot be written")?;
     println!("{path}");
     Ok(folder)
 }

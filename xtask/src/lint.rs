@@ -19,9 +19,6 @@ pub fn packing() -> [Vec<&'static str>; 2] {
 }
 
 /// Runs all checks, even after one has failed.
-///
-/// # Errors
-/// Fails if a check has found something.
 pub fn lint() -> anyhow::Result<()> {
     let mut checks: Vec<Vec<&str>> = vec![
         vec!["fmt", "--all", "--check"],

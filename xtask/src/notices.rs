@@ -6,9 +6,6 @@ use crate::{cargo, console};
 pub const FILE: &str = "NOTICES.txt";
 
 /// Returns the notices of everything that a package contains for a target, built with these arguments of cargo's.
-///
-/// # Errors
-/// Fails if a licence is not accepted, or cargo fails.
 pub fn text(package: &str, target: &str, features: &[&str]) -> anyhow::Result<String> {
     let arguments = [&["notices", package, target], features].concat();
     let (text, _) = cargo::helper("yoro-publish", &arguments)?;
@@ -16,9 +13,6 @@ pub fn text(package: &str, target: &str, features: &[&str]) -> anyhow::Result<St
 }
 
 /// Checks the licences of all dependencies, and prints those that are not accepted. Returns true if all are.
-///
-/// # Errors
-/// Fails if cargo fails.
 pub fn are_accepted() -> anyhow::Result<bool> {
     let (report, passed) = cargo::helper("yoro-publish", &["licences"])?;
     console::print(&report);

@@ -22,9 +22,6 @@ pub struct PrivateApt {
 impl PrivateApt {
     /// Keeps all files in `folder`, which [`PrivateApt::remove`] removes. `sources` are lines of a sources.list that
     /// replace this machine's.
-    ///
-    /// # Errors
-    /// Fails if Debian's tools are missing, or the folder cannot be written.
     pub fn new(folder: PathBuf, architectures: &[&str], sources: Option<&str>) -> anyhow::Result<Self> {
         for tool in ["apt-get", "dpkg-deb", "tar"] {
             apt::find_program(tool)
@@ -75,26 +72,17 @@ impl PrivateApt {
     }
 
     /// Fetches the lists of packages.
-    ///
-    /// # Errors
-    /// Fails if apt-get fails.
     pub fn update(&self) -> anyhow::Result<()> {
         let _turn = apt::turn();
         self.get(&["update"])
     }
 
     /// Returns the names of the packages that begin with `beginning`, one per line.
-    ///
-    /// # Errors
-    /// Fails if apt-cache cannot be started.
     pub fn names(&self, beginning: &str) -> anyhow::Result<String> {
         run(&mut self.command("apt-cache", &["pkgnames", beginning]))
     }
 
     /// Downloads packages and their dependencies, and returns the files. A package may be followed by `=VERSION`.
-    ///
-    /// # Errors
-    /// Fails if apt-get fails.
     pub fn download(&self, packages: &[String]) -> anyhow::Result<Vec<PathBuf>> {
         let mut arguments = vec!["install", "--yes", "--download-only", "--no-install-recommends"];
         arguments.extend(packages.iter().map(String::as_str));
@@ -111,9 +99,6 @@ impl PrivateApt {
 
 /// Unpacks a package's files into `root` without running any of its scripts: those that match one of the patterns
 /// `only`, if there are any, and none of the patterns `without`.
-///
-/// # Errors
-/// Fails if the package is damaged, or there is no space.
 pub fn unpack(package: &Path, root: &Path, only: &[&str], without: &[&str]) -> anyhow::Result<()> {
     // Newer distributions have all libraries below usr, and expect links to them in the root.
     if !root.exists() {
@@ -142,9 +127,6 @@ pub fn unpack(package: &Path, root: &Path, only: &[&str], without: &[&str]) -> a
 }
 
 /// Returns lines of a sources.list for these Debian releases, from this machine's own mirror.
-///
-/// # Errors
-/// Fails if this machine has no Debian source.
 pub fn debian_sources(releases: &[&str]) -> anyhow::Result<String> {
     let arguments = ["indextargets", "--format", "$(REPO_URI) $(COMPONENT)", "Created-By: Packages"];
     let targets = run(Command::new("apt-get").args(arguments))?;
@@ -167,10 +149,13 @@ pub fn quoted(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
 }
 
+/// Writes an executable shell script, with values for the names that are written `@NAME@` in its template.
+pub fn fill_launcher(launcher: &Path, template: &str, values: &[(&str, &str)]) -> anyhow::Result<()> {
+    let replace = |text: String, (name, value): &(&str, &str)| text.replace(&format!("@{name}@"), value);
+    write_launcher(launcher, &values.iter().fold(template.to_owned(), replace))
+}
+
 /// Writes an executable shell script.
-///
-/// # Errors
-/// Fails if the file cannot be written.
 pub fn write_launcher(launcher: &Path, text: &str) -> anyhow::Result<()> {
     write(launcher, format!("#!/bin/sh\n{text}"))?;
     fs::set_permissions(launcher, fs::Permissions::from_mode(0o755))

@@ -88,9 +88,6 @@ impl Rust {
     }
 
     /// Returns its cargo, in the workspace's root and without RUSTFLAGS, which are for this machine's processor.
-    ///
-    /// # Errors
-    /// Fails if PATH cannot be extended.
     pub fn cargo(&self) -> anyhow::Result<Command> {
         let mut command = Command::new(self.programs.join("cargo"));
         command.current_dir(root()).env_remove("RUSTFLAGS");
@@ -100,9 +97,6 @@ impl Rust {
 
     /// Makes a command use this Rust, by PATH: cargo's subcommands run the first cargo there. Removes the variables
     /// that the cargo of this program has set.
-    ///
-    /// # Errors
-    /// Fails if PATH cannot be extended.
     pub fn use_in(&self, command: &mut Command) -> anyhow::Result<()> {
         let mut path = OsString::from(&self.programs);
         if let Some(rest) = env::var_os("PATH") {

@@ -7,13 +7,12 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use anyhow::{anyhow, bail};
+use anyhow::bail;
 
-use crate::apt;
+use crate::apt::{self, Need};
 
-/// A system requirement.
-#[derive(Clone, Copy)]
-struct Need {
+/// A system library.
+struct Library {
     /// The name in messages.
     what: &'static str,
     /// File names, any of which is sufficient. A trailing `*` matches any ending.
@@ -22,12 +21,16 @@ struct Need {
     packages: &'static [&'static str],
 }
 
-const fn need(what: &'static str, files: &'static [&'static str], packages: &'static [&'static str]) -> Need {
-    Need { what, files, packages }
+const fn need(
+    what: &'static str,
+    files: &'static [&'static str],
+    packages: &'static [&'static str],
+) -> Library {
+    Library { what, files, packages }
 }
 
 /// What the project's programs need.
-const NEEDS: [Need; 5] = [
+const NEEDS: [Library; 5] = [
     need("libEGL", &["libEGL.so.1"], &["libegl1"]),
     need("OpenGL ES", &["libGLESv2.so.2"], &["libgles2"]),
     // libEGL is a dispatcher, which needs one of the first two, or it is Mesa's own, which always has the number 1.0.0.
@@ -38,18 +41,17 @@ const NEEDS: [Need; 5] = [
     ),
     // Mesa's rasterizer is in a DRI module or, since 24.2, in libgallium.
     need("a GL driver", &["libgallium-*", "dri/swrast_dri.so", "libEGL_nvidia.so.0"], &["libgl1-mesa-dri"]),
-    need(OSMESA, &["libOSMesa.so.8", "libOSMesa.so.6"], &["libosmesa6"]),
+    // Mesa 25.1 removed it, so new distributions lack it. Only `--gl osmesa` and its tests need it.
+    need("OSMesa", &["libOSMesa.so.8", "libOSMesa.so.6"], &["libosmesa6"]),
 ];
-/// Mesa 25.1 removed it, so new distributions lack it. Only `--gl osmesa` and its tests need it.
-const OSMESA: &str = "OSMesa";
 
-const VULKAN: [Need; 3] = [
+const VULKAN: [Library; 3] = [
     need("the Vulkan loader", &["libvulkan.so.1"], &["libvulkan1"]),
     need("a Vulkan driver without a GPU", &["libvulkan_lvp.so"], &["mesa-vulkan-drivers"]),
     need("Vulkan's validation layer", &["libVkLayer_khronos_validation.so"], &["vulkan-validationlayers"]),
 ];
 /// Headers for the samples in C. Their tests are skipped if these are missing.
-const HEADERS: [Need; 2] = [
+const HEADERS: [Library; 2] = [
     need("Vulkan's headers", &["libvulkan.so"], &["libvulkan-dev"]),
     need("headers of OpenGL ES", &["libGLESv2.so"], &["libgles-dev", "libegl-dev"]),
 ];
@@ -64,90 +66,54 @@ const ADVICE: [(&str, &str); 5] = [
 ];
 
 /// Returns the need for a C++ compiler, which builds the H.264 encoder.
-pub fn cpp() -> apt::Need {
-    apt::Need::program("c++", &["g++"])
+pub fn cpp() -> Need {
+    Need::program("c++", &["g++"])
 }
 
 /// Installs what is missing. Prints nothing if nothing is missing. Returns true if OSMesa is here, which is optional.
-///
-/// # Errors
-/// Fails if this program cannot install it. The error says what to install.
 pub fn ensure() -> anyhow::Result<bool> {
     if !cfg!(target_os = "linux") {
         bail!(
             "OpenGL ES without a window is supported on Linux only: use Linux, a container, or WSL on Windows"
         );
     }
-    let remedy = match install(missing(&NEEDS)) {
-        Ok(()) => "apt-get has nothing more to install: reinstall Mesa, or a driver of the GPU".to_owned(),
-        Err(error) => format!("{error:#}"),
-    };
-    conclude(&missing(&NEEDS), &remedy)
+    let Err(error) = apt::install_missing(|| needs(&NEEDS), true) else { return Ok(true) };
+    if needs(&NEEDS[..4]).iter().any(|need| need.found.is_err()) {
+        return Err(error);
+    }
+    eprintln!("warning: --gl osmesa does not work here: {error:#}");
+    Ok(false)
 }
 
 /// Installs what tests and shaders of Vulkan and tests in C need, none of which the project's programs need. Returns
 /// true if the tests of Vulkan can run.
 pub fn vulkan() -> bool {
-    let mut needs = missing(&VULKAN);
-    needs.extend(missing(&HEADERS));
-    if glslang().is_none() {
-        needs.push(need("glslangValidator", &[], &["glslang-tools"]));
-    }
-    if let Err(error) = install(needs) {
+    let all = || {
+        let glslang = Need::program("glslangValidator", &["glslang-tools"]);
+        needs(&VULKAN).into_iter().chain(needs(&HEADERS)).chain([glslang]).collect()
+    };
+    if let Err(error) = apt::install_missing(all, true) {
         eprintln!("warning: tests of Vulkan will be left out: {error:#}");
     }
-    missing(&VULKAN).is_empty()
+    needs(&VULKAN).iter().all(|need| need.found.is_ok())
 }
 
 /// Returns the browser for tests of pages. Installs one if necessary and apt has one.
 pub fn browser() -> Option<PathBuf> {
     let find = || ["chromium", "chromium-browser", "google-chrome"].into_iter().find_map(apt::find_program);
     find().or_else(|| {
-        if let Err(error) = install(vec![need("a browser", &[], &["chromium"])]) {
+        if let Err(error) = apt::install_missing(|| vec![Need::program("chromium", &["chromium"])], true) {
             eprintln!("warning: {error:#}");
         }
         find()
     })
 }
 
-/// Returns the path of the compiler for Vulkan shaders.
-pub fn glslang() -> Option<PathBuf> {
-    apt::find_program("glslangValidator")
+fn needs(libraries: &[Library]) -> Vec<Need> {
+    needs_in(&library_folders(), libraries)
 }
 
-fn install(missing: Vec<Need>) -> anyhow::Result<()> {
-    if missing.is_empty() {
-        return Ok(());
-    }
-    eprintln!("missing: {}", names(&missing));
-    if apt::find_program("apt-get").is_none() {
-        let release = fs::read_to_string("/etc/os-release").unwrap_or_default();
-        return Err(anyhow!("install it with {}", advice(&release)));
-    }
-    apt::install(&missing.iter().map(|need| need.packages).collect::<Vec<_>>())
-}
-
-fn names(needs: &[Need]) -> String {
-    needs.iter().map(|need| need.what).collect::<Vec<_>>().join(", ")
-}
-
-/// Fails if something is still missing that is not optional.
-fn conclude(missing: &[Need], remedy: &str) -> anyhow::Result<bool> {
-    let required: Vec<Need> = missing.iter().copied().filter(|need| need.what != OSMESA).collect();
-    if !required.is_empty() {
-        bail!("{} missing: {remedy}", names(&required));
-    }
-    if !missing.is_empty() {
-        eprintln!("warning: OSMesa is missing, so that --gl osmesa does not work here; {remedy}");
-    }
-    Ok(missing.is_empty())
-}
-
-fn missing(needs: &[Need]) -> Vec<Need> {
-    missing_in(&library_folders(), needs)
-}
-
-fn missing_in(folders: &[PathBuf], needs: &[Need]) -> Vec<Need> {
+fn needs_in(folders: &[PathBuf], libraries: &[Library]) -> Vec<Need> {
     let is_here = |name: &&'static str| {
         folders.iter().any(|folder| match name.strip_suffix('*') {
             Some(start) => fs::read_dir(folder).is_ok_and(|entries| {
@@ -156,7 +122,18 @@ fn missing_in(folders: &[PathBuf], needs: &[Need]) -> Vec<Need> {
             None => folder.join(name).exists(),
         })
     };
-    needs.iter().copied().filter(|need| !need.files.iter().any(is_here)).collect()
+    let release = fs::read_to_string("/etc/os-release").unwrap_or_default();
+    let need = |library: &Library| {
+        let file = library.files.iter().find(|name| is_here(name));
+        let found = file.map(|&name| name.to_owned()).ok_or_else(|| "not among the libraries".to_owned());
+        Need {
+            what: library.what,
+            found,
+            remedy: advice(&release, library.packages),
+            packages: library.packages,
+        }
+    };
+    libraries.iter().map(need).collect()
 }
 
 /// Returns the folders that the dynamic linker searches, as far as they can be determined.
@@ -181,14 +158,12 @@ fn library_folders() -> Vec<PathBuf> {
     folders.into_iter().collect()
 }
 
-/// Returns what installs everything on a distribution without apt, identified by its os-release file.
-fn advice(release: &str) -> String {
+/// Returns what installs packages of Debian's or, on a distribution without apt, which its os-release file tells, everything.
+fn advice(release: &str, packages: &[&str]) -> String {
     let ids = release.lines().filter(|line| line.starts_with("ID=") || line.starts_with("ID_LIKE="));
     let ids: String = ids.collect::<Vec<_>>().join(" ");
-    match ADVICE.iter().find(|(word, _)| ids.contains(word)) {
-        Some((_, command)) => format!("`{command}` as root"),
-        None => "your package manager: Mesa with EGL, OpenGL ES, llvmpipe and OSMesa".to_owned(),
-    }
+    let other = ADVICE.iter().find(|(word, _)| ids.contains(word)).map(|(_, command)| (*command).to_owned());
+    other.unwrap_or_else(|| format!("apt-get install {}", packages.join(" ")))
 }
 
 #[cfg(test)]
@@ -197,10 +172,11 @@ mod tests {
 
     #[test]
     fn advice_fits_the_distribution() {
+        let advice = |release| advice(release, &["libegl1"]);
         assert!(advice("NAME=\"Fedora Linux\"\nID=fedora\n").contains("dnf"));
         assert!(advice("ID=\"rocky\"\nID_LIKE=\"rhel centos fedora\"\n").contains("dnf"));
         assert!(advice("ID=manjaro\nID_LIKE=arch").contains("pacman"));
-        assert!(advice("VERSION_ID=1\nID=slackware").contains("your package manager"));
+        assert_eq!(advice("VERSION_ID=1\nID=debian"), "apt-get install libegl1");
     }
 
     #[test]
@@ -212,15 +188,11 @@ mod tests {
         {
             fs::write(folder.path().join(name), "").unwrap();
         }
-        let missing = |needs: &[Need]| names(&missing_in(&[folder.path().to_owned()], needs));
+        let missing = |libraries: &[Library]| {
+            let needs = needs_in(&[folder.path().to_owned()], libraries).into_iter();
+            needs.filter(|need| need.found.is_err()).map(|need| need.what).collect::<Vec<_>>().join(", ")
+        };
         assert_eq!(missing(&NEEDS), "OpenGL ES, an EGL vendor library, OSMesa");
         assert_eq!(missing(&VULKAN), "Vulkan's validation layer");
-    }
-
-    #[test]
-    fn only_osmesa_is_optional() {
-        assert!(conclude(&[], "").unwrap() && !conclude(&NEEDS[4..], "").unwrap());
-        let error = conclude(&[NEEDS[0], NEEDS[4]], "do this").unwrap_err().to_string();
-        assert_eq!(error, "libEGL missing: do this");
     }
 }

@@ -5,15 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 
 use crate::folders::{copy_folder, read_text, remove, target_folder, write};
 use crate::{cargo, lint, web};
 
 /// Builds the site, and returns its folder, `target/site`. `release` is a folder with the files of a release.
-///
-/// # Errors
-/// Fails if a part does not compile, or a document links to a file that does not exist.
 pub fn build(release: Option<&Path>) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let target = target_folder()?;
@@ -44,8 +41,6 @@ fn api(target: &Path) -> anyhow::Result<PathBuf> {
     let target_text = target.display().to_string();
     let mut arguments = vec!["doc", "--locked", "--no-deps", "--all-features", "--target-dir", &target_text];
     arguments.extend(lint::PUBLISHED.iter().flat_map(|name| ["--package", name]));
-    if !cargo::succeeds(&arguments, &[]) {
-        bail!("the crates cannot be documented: see above");
-    }
+    cargo::perform(cargo::cargo().args(arguments), "the crates cannot be documented")?;
     Ok(target.join("doc"))
 }

@@ -46,9 +46,6 @@ const JAR: &str = "--min-sdk-version 29 --v1-signing-enabled true --v2-signing-e
                    --v4-signing-enabled false";
 
 /// Builds, signs and checks the APK, and returns its path.
-///
-/// # Errors
-/// Fails if something is missing, a step fails, or a check of the result fails.
 pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let loaders = options.openxr_loaders.iter().map(|file| Ok((check::loader_abi(file)?, file.as_path())));
@@ -148,9 +145,6 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
 }
 
 /// Installs, without asking, what is needed to build the APK.
-///
-/// # Errors
-/// Fails if something cannot be obtained on this machine.
 pub fn ready_for_tests() -> anyhow::Result<PathBuf> {
     let (toolchain, _) = Toolchain::choose();
     toolchain::ensure(&toolchain, true)?;
@@ -158,9 +152,6 @@ pub fn ready_for_tests() -> anyhow::Result<PathBuf> {
 }
 
 /// Builds the APKs for tests.
-///
-/// # Errors
-/// Those of [`apk`].
 pub fn apk_for_tests() -> anyhow::Result<PathBuf> {
     apk(&Options { release: true, yes: true, quest: true, quick: true, ..Options::default() })
 }

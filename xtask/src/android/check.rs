@@ -2,7 +2,6 @@
 
 use std::path::{Path, absolute};
 
-use anyhow::Context as _;
 use clap::ValueEnum;
 
 use super::toolchain;
@@ -21,17 +20,14 @@ fn run(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
     cargo::helper("yoro-android-check", arguments)
 }
 
-fn absolute_path(path: &Path) -> anyhow::Result<String> {
-    let path = absolute(path).context("the current folder is gone: change to another")?;
-    Ok(path.display().to_string())
+fn text(path: &Path) -> anyhow::Result<String> {
+    // The helper runs in the workspace's root.
+    Ok(absolute(path)?.display().to_string())
 }
 
 /// Checks whether Android will install and start an APK, or whether a store takes it, and prints the result. Returns true
 /// if so, `apart_from` the rules `any-key` (it may be signed for debugging) and `any-size`. Installs Android's own tools if
 /// they are missing.
-///
-/// # Errors
-/// Fails if the file is missing or not an APK, or a tool for the checks is missing.
 pub fn check(apk: &Path, store: Option<Store>, apart_from: &[&str]) -> anyhow::Result<bool> {
     apt::install_missing(toolchain::check_tools, true)?;
     let store = match store {
@@ -39,32 +35,23 @@ pub fn check(apk: &Path, store: Option<Store>, apart_from: &[&str]) -> anyhow::R
         Some(Store::Quest) => "quest",
         Some(Store::Play) => "play",
     };
-    let apk = absolute_path(apk)?;
+    let apk = text(apk)?;
     let (report, passed) = run(&[&["check", &apk, store][..], apart_from].concat())?;
     console::print(&report);
     Ok(passed)
 }
 
 /// Returns the architecture of an OpenXR loader as its folder name in an APK.
-///
-/// # Errors
-/// Fails if the file is not a loader, or is for an architecture that the APK has no libraries for.
 pub fn loader_abi(file: &Path) -> anyhow::Result<String> {
-    Ok(run(&["loader", &absolute_path(file)?])?.0)
+    Ok(run(&["loader", &text(file)?])?.0)
 }
 
 /// Makes an unsigned bundle from an APK.
-///
-/// # Errors
-/// Fails if aapt2 is missing or rejects the APK, or the bundle cannot be written.
 pub fn bundle(apk: &Path, bundle: &Path) -> anyhow::Result<()> {
-    run(&["bundle", &absolute_path(apk)?, &absolute_path(bundle)?]).map(drop)
+    run(&["bundle", &text(apk)?, &text(bundle)?]).map(drop)
 }
 
 /// Packs the files of a folder as a zip.
-///
-/// # Errors
-/// Fails if it cannot be written.
 pub fn pack(packed: &Path, folder: &Path) -> anyhow::Result<()> {
-    run(&["pack", &absolute_path(packed)?, &absolute_path(folder)?]).map(drop)
+    run(&["pack", &text(packed)?, &text(folder)?]).map(drop)
 }

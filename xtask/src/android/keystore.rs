@@ -34,9 +34,6 @@ pub struct Keystore {
 impl Keystore {
     /// Returns the keystore in the environment if this is a release and there is one. Otherwise returns this machine's
     /// debug keystore, which is made if it does not exist.
-    ///
-    /// # Errors
-    /// Fails if the environment is incomplete or names no file, or keytool fails.
     pub fn choose(release: bool) -> anyhow::Result<Self> {
         if !release {
             return Self::debug();

@@ -17,9 +17,6 @@ use super::toolchain::{self, Toolchain};
 pub const API: u32 = 30;
 
 /// Returns a cargo that compiles and links for Android with the architecture's triple. The result can unwind.
-///
-/// # Errors
-/// Fails if something is missing. The error names the remedy.
 pub fn cargo(architecture: Architecture) -> anyhow::Result<Command> {
     let (toolchain, _) = Toolchain::choose();
     toolchain::ensure(&toolchain, true)?;

@@ -2,32 +2,26 @@
 
 use anyhow::{Context as _, ensure};
 
-use crate::ndk::target::{NATIVE_LIBRARIES, PROPERTIES, QUEST_TARGET_API, TARGET_API};
+use crate::ndk::target::{QUEST_TARGET_API, TARGET_API};
 
-/// Completes the manifest written by cargo-apk. Adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] to the application, and
-/// declares it a game: from API level 36 on, Android lets only games fix their orientation on large screens.
-///
-/// # Errors
-/// Fails if the manifest has no application.
+/// What cargo-apk has no keys for. From target API level 31 on, Android only loads an OpenXR runtime's library from a system
+/// partition for an application that names it; not required, since each exists only on headsets of one maker. Android XR
+/// starts an OpenXR application in a space of its own only if it has the property.
+const OTHERS: &str = r#"<uses-native-library android:name="libopenxr.google.so" android:required="false"/><property android:name="android.window.PROPERTY_XR_ACTIVITY_START_MODE" android:value="XR_ACTIVITY_START_MODE_FULL_SPACE_UNMANAGED"/>"#;
+const QUEST: &str =
+    r#"<uses-native-library android:name="libopenxr_forwardloader.oculus.so" android:required="false"/>"#;
+
+/// Completes the manifest written by cargo-apk: adds what it has no keys for, and declares the application a game: from API
+/// level 36 on, Android lets only games fix their orientation on large screens.
 pub fn complete(manifest: &str) -> anyhow::Result<String> {
-    let libraries = NATIVE_LIBRARIES
-        .map(|name| format!(r#"<uses-native-library android:name="{name}" android:required="false"/>"#));
-    let properties = PROPERTIES
-        .map(|(name, value)| format!(r#"<property android:name="{name}" android:value="{value}"/>"#));
-    let whole = at_the_end(manifest, &[libraries.concat(), properties.concat()].concat())?;
-    Ok(as_game(&whole))
+    Ok(as_game(&at_the_end(manifest, &[QUEST, OTHERS].concat())?))
 }
 
 /// Changes the manifest written by cargo-apk into that of the APK for Meta's store. It must conform to
 /// <https://developers.meta.com/horizon/resources/publish-mobile-manifest> (5 March 2026) or its upload fails, and may
 /// ask for no permission that it does not use. What concerns other makers' headsets, phones and device farms goes, too:
 /// on a Quest, nothing would use it.
-///
-/// # Errors
-/// Fails if the manifest lacks what is to be changed.
 pub fn for_quest(manifest: &str) -> anyhow::Result<String> {
-    let [own, others] = [NATIVE_LIBRARIES[1], NATIVE_LIBRARIES[0]];
-    debug_assert!(own.contains("oculus") && !others.contains("oculus"));
     let mut text = manifest.to_owned();
     for (from, to) in [
         (
@@ -58,8 +52,7 @@ pub fn for_quest(manifest: &str) -> anyhow::Result<String> {
     ] {
         text = without(&text, element, mark)?;
     }
-    let library = format!(r#"<uses-native-library android:name="{own}" android:required="false"/>"#);
-    Ok(as_game(&at_the_end(&text, &library)?))
+    Ok(as_game(&at_the_end(&text, QUEST)?))
 }
 
 fn as_game(manifest: &str) -> String {
@@ -107,15 +100,9 @@ mod tests {
     #[test]
     fn what_is_added_is_in_the_application() {
         let whole = complete("<manifest><application><activity/></application></manifest>").unwrap();
-        assert_eq!(
-            whole,
-            "<manifest><application android:appCategory=\"game\"><activity/>\
-             <uses-native-library android:name=\"libopenxr.google.so\" android:required=\"false\"/>\
-             <uses-native-library android:name=\"libopenxr_forwardloader.oculus.so\" android:required=\"false\"/>\
-             <property android:name=\"android.window.PROPERTY_XR_ACTIVITY_START_MODE\" \
-             android:value=\"XR_ACTIVITY_START_MODE_FULL_SPACE_UNMANAGED\"/>\
-             </application></manifest>"
-        );
+        let (before, after) = whole.split_once("<activity/>").unwrap();
+        assert_eq!(before, "<manifest><application android:appCategory=\"game\">");
+        assert_eq!(after, [QUEST, OTHERS, "</application></manifest>"].concat());
         assert!(complete("<manifest/>").unwrap_err().to_string().contains("</application>"));
     }
 

@@ -23,9 +23,6 @@ pub enum Variant {
 /// Packs, aligns and signs an APK from cargo-apk's output in `folder`: its manifest, which is completed for the variant,
 /// and the libraries in its APK `name`. `notices` goes into its assets. Returns the path of the new APK, in the same
 /// folder.
-///
-/// # Errors
-/// Fails if a tool fails, or cargo-apk's output has an unexpected form.
 pub fn pack(
     variant: Variant,
     folder: &Path,

@@ -124,9 +124,6 @@ fn stand_in() -> Vec<Need> {
 }
 
 /// Installs what the toolchain needs. Asks first unless `yes`.
-///
-/// # Errors
-/// Fails if something is still missing; the error names it and the remedy.
 pub fn ensure(toolchain: &Toolchain, yes: bool) -> anyhow::Result<()> {
     apt::install_missing(|| toolchain.needs(), yes).map_err(|error| match toolchain {
         Toolchain::Google { .. } => error,

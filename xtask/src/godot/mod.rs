@@ -25,9 +25,6 @@ pub enum Task {
 }
 
 /// Writes the project with the kit's shaders, and returns its folder. Keeps the files that Godot has imported there.
-///
-/// # Errors
-/// Fails if the kit does not compile, or a file cannot be written.
 pub fn project() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("godot-project");
     for part in ["addons", "demo", "test"] {
@@ -41,9 +38,6 @@ pub fn project() -> anyhow::Result<PathBuf> {
 }
 
 /// Returns the project's files, with their names in the project.
-///
-/// # Errors
-/// Fails if the kit does not compile, or a folder cannot be read.
 pub fn files() -> anyhow::Result<Vec<(String, PathBuf)>> {
     let mut files = folders::files(&root().join("app/engines/godot"))?;
     // Of the hidden files, only those that make Godot ignore a folder.

@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 use serde_json::Value;
 
+use crate::console::run;
 use crate::folders::copy;
 
 /// The similarity of two pictures.
@@ -21,9 +22,6 @@ pub struct Quality {
 pub type Case = [&'static str; 3];
 
 /// Compares the synthesized eye and the rendered eye of each case with what Godot draws for the synthesized eye.
-///
-/// # Errors
-/// Fails if a picture is missing.
 pub fn compare(
     yoro: &mut dyn FnMut() -> Command,
     folder: &Path,
@@ -44,27 +42,15 @@ pub fn compare(
             copy(&folder.join(format!("{of}-{mode}-{eye}.png")), &place(kind, case))?;
         }
     }
-    let mut told = ["made", "same"].into_iter().map(|kind| {
-        let compared = folder.join("compared");
-        let output = yoro()
-            .args(["compare", "--json"])
-            .args([compared.join(kind), compared.join("truth")])
-            .output()
-            .context("yoro cannot be started")?;
-        if !output.status.success() {
-            bail!("pictures cannot be compared: {}", String::from_utf8_lossy(&output.stderr).trim());
-        }
-        Ok(serde_json::from_slice::<Value>(&output.stdout)?)
-    });
-    let (Some(made), Some(same)) = (told.next(), told.next()) else { bail!("nothing was compared") };
-    let (made, same) = (made?, same?);
-    cases
-        .iter()
-        .map(|[case, _, godot]| {
-            let find = |told, case| quality(told, case).with_context(|| format!("{case} was not compared"));
-            Ok([find(&made, case)?, find(&same, godot)?])
-        })
-        .collect()
+    let compared = folder.join("compared");
+    let mut told = |kind: &str| {
+        let folders = [compared.join(kind), compared.join("truth")];
+        let text = run(yoro().args(["compare", "--json"]).args(folders))?;
+        anyhow::Ok(serde_json::from_str::<Value>(&text)?)
+    };
+    let (made, same) = (told("made")?, told("same")?);
+    let find = |told, case| quality(told, case).with_context(|| format!("{case} was not compared"));
+    cases.iter().map(|[case, _, godot]| Ok([find(&made, case)?, find(&same, godot)?])).collect()
 }
 
 /// Reads a pair from the output of `yoro compare --json`.

@@ -22,9 +22,6 @@ pub struct Session {
 
 impl Session {
     /// Sets up what is missing, and starts the display.
-    ///
-    /// # Errors
-    /// Fails if something cannot be obtained on this machine.
     pub fn begin() -> anyhow::Result<Self> {
         let godot = godot::make()?;
         if apt::find_program("Xvfb").is_none() {
@@ -54,9 +51,6 @@ impl Session {
 
     /// Runs Godot with these arguments, and returns its output. Godot writes its log to `folder`, and finds the runtime
     /// there. Its exit status is ignored.
-    ///
-    /// # Errors
-    /// Fails if Godot takes longer than `limit`.
     pub fn godot(&self, arguments: &[&str], folder: &Path, limit: Duration) -> anyhow::Result<String> {
         let log = folder.join("log");
         let file = File::create(&log).with_context(|| format!("{} cannot be written", log.display()))?;
@@ -88,9 +82,6 @@ impl Session {
     }
 
     /// Starts the runtime. Programs with the same folder find it.
-    ///
-    /// # Errors
-    /// Fails if the runtime does not start.
     pub fn runtime(&self, folder: &Path) -> anyhow::Result<Running> {
         monado::start(&self.godot.join("monado-service"), folder).map_err(anyhow::Error::msg)
     }

@@ -71,9 +71,6 @@ const USUAL: [&str; 3] = [
 ];
 
 /// Runs all tests, and prints a line per picture. Without Godot, skips them with a message.
-///
-/// # Errors
-/// Fails if a test fails.
 pub fn test() -> anyhow::Result<()> {
     let session = match Session::begin() {
         Ok(session) => session,

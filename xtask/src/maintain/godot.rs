@@ -5,22 +5,18 @@
 //! same day. The packages are only unpacked. There are two programs: `godot`, and `monado-service`, its OpenXR runtime.
 //! They find each other through XDG_RUNTIME_DIR.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::bail;
 
 use super::monado;
 use crate::folders::{make_once, target_folder};
-use crate::packages::{quoted, write_launcher};
 
 const RELEASE: &str = "sid";
 /// The runtime and the application must have the same version.
 const PACKAGES: [&str; 4] = ["godot", "monado-service", "libopenxr1-monado", "mesa-vulkan-drivers"];
 
 /// Sets up Godot, and returns how to use it.
-///
-/// # Errors
-/// Fails if it cannot be obtained on this machine.
 pub fn usage() -> anyhow::Result<String> {
     let folder = make()?.display().to_string();
     Ok(format!(
@@ -32,9 +28,6 @@ pub fn usage() -> anyhow::Result<String> {
 }
 
 /// Returns the folder with the programs `godot` and `monado-service`. Fetches and unpacks what is missing.
-///
-/// # Errors
-/// Fails if they cannot be obtained on this machine.
 pub fn make() -> anyhow::Result<PathBuf> {
     if !cfg!(target_arch = "x86_64") {
         bail!("it is fetched for x86_64 only");
@@ -45,26 +38,8 @@ pub fn make() -> anyhow::Result<PathBuf> {
         eprintln!("fetching Godot for its tests: 200 MB, once");
         monado::unpack_with_needs(&folder, &root, RELEASE, &PACKAGES.map(str::to_owned))
     })?;
-    write_programs(&folder, &root)?;
+    let program = root.join("usr/bin/godot");
+    monado::write_launcher(&folder.join("godot"), monado::APPLICATION, &root, &[], &program)?;
+    monado::write_service(&folder, &root)?;
     Ok(folder)
-}
-
-fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
-    let usr = root.join("usr");
-    let program = usr.join("bin/godot");
-    if !program.is_file() {
-        bail!("{} is not where Debian's packages have it", program.display());
-    }
-    let text = format!(
-        "# Godot with the libraries of its own Debian, its Vulkan on the CPU, and Monado as its OpenXR runtime.\n\
-         unset LD_LIBRARY_PATH\n\
-         export VK_DRIVER_FILES={} XR_RUNTIME_JSON={}\n\
-         exec {} {} \"$@\"\n",
-        quoted(&usr.join("share/vulkan/icd.d/lvp_icd.json")),
-        quoted(&root.join(monado::MANIFEST)),
-        monado::linker(root, &[]),
-        quoted(&program),
-    );
-    write_launcher(&folder.join("godot"), &text)?;
-    monado::write_service(folder, root)
 }

@@ -7,8 +7,6 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
-
 use super::monado;
 use crate::folders::{copy, make_once, target_folder};
 use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
@@ -23,9 +21,6 @@ const WITHOUT: [&str; 1] = ["./usr/share/*"];
 const LOADER: &str = "libopenxr_loader.so.1";
 
 /// Sets up hello_xr, and returns how to use it.
-///
-/// # Errors
-/// Fails if it cannot be obtained on this machine.
 pub fn usage() -> anyhow::Result<String> {
     let folder = make()?.display().to_string();
     Ok(format!(
@@ -38,9 +33,6 @@ pub fn usage() -> anyhow::Result<String> {
 /// Returns the folder with the programs `hello_xr` and `monado-service`, the launcher `run PROGRAM ...`, which is
 /// [Monado's](super::monado) with the loader's libraries, and the loader `libopenxr_loader.so.1`. Fetches what is
 /// missing.
-///
-/// # Errors
-/// Fails if they cannot be obtained on this machine.
 pub fn make() -> anyhow::Result<PathBuf> {
     let monado = monado::make()?;
     let folder = target_folder()?.join("hello-xr");
@@ -65,37 +57,16 @@ pub fn make() -> anyhow::Result<PathBuf> {
         apt.remove();
         Ok(())
     })?;
-    write_programs(&folder, &root, &monado)?;
-    Ok(folder)
-}
-
-fn write_programs(folder: &Path, root: &Path, monado: &Path) -> anyhow::Result<()> {
-    let usr = root.join("usr");
-    let program = usr.join("bin/hello_xr");
-    if !program.is_file() {
-        bail!("{} is not where Debian's packages have it", program.display());
-    }
-    let drivers = monado.join("root/usr/share/vulkan/icd.d/lvp_icd.json");
-    let libraries = usr.join("lib/x86_64-linux-gnu");
-    let linker = monado::linker(&monado.join("root"), std::slice::from_ref(&libraries));
-    let manifest = monado.join("root").join(monado::MANIFEST);
-    let hello = format!(
-        "# Khronos's example with the libraries that Monado has, and Monado as its OpenXR runtime.\n\
-         unset LD_LIBRARY_PATH\n\
-         export VK_DRIVER_FILES={} XR_RUNTIME_JSON={}\n\
-         exec {linker} {} \"$@\"\n",
-        quoted(&drivers),
-        quoted(&manifest),
-        quoted(&program),
-    );
-    write_launcher(&folder.join("hello_xr"), &hello)?;
-    write_launcher(
-        &folder.join("run"),
-        &monado::run(&monado.join("root"), std::slice::from_ref(&libraries)),
-    )?;
+    let libraries = root.join("usr/lib/x86_64-linux-gnu");
+    let launch = |name: &str, template, program: &Path| {
+        monado::write_launcher(&folder.join(name), template, &monado.join("root"), &[&libraries], program)
+    };
+    launch("hello_xr", monado::APPLICATION, &root.join("usr/bin/hello_xr"))?;
+    launch("run", monado::RUN, Path::new(""))?;
     copy(&libraries.join(LOADER), &folder.join(LOADER))?;
     // Some Rust programs look for the file name without the version.
     copy(&libraries.join(LOADER), &libraries.join("libopenxr_loader.so"))?;
     let service = format!("exec {} \"$@\"\n", quoted(&monado.join("monado-service")));
-    write_launcher(&folder.join("monado-service"), &service)
+    write_launcher(&folder.join("monado-service"), &service)?;
+    Ok(folder)
 }

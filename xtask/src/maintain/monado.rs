@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use anyhow::bail;
 
 use crate::folders::{make_once, target_folder};
-use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
+use crate::packages::{PrivateApt, debian_sources, fill_launcher, quoted, unpack};
 
 /// The Debian release with these packages.
 const RELEASE: &str = "trixie";
@@ -38,16 +38,15 @@ const WITHOUT: [&str; 12] = [
     "./var/*",
     "./etc/*",
 ];
-/// The runtime's manifest, relative to the root.
-pub(crate) const MANIFEST: &str = "usr/share/openxr/1/openxr_monado.json";
+/// The launcher of this machine's programs. The runtime is Monado unless XR_RUNTIME_JSON names another one.
+pub(crate) const RUN: &str = include_str!("launchers/run.sh");
+/// The launcher of a program in a root.
+pub(crate) const APPLICATION: &str = include_str!("launchers/application.sh");
 
 /// The longest wait for the service, which other processes may slow down.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Sets up Monado, and returns how to use it.
-///
-/// # Errors
-/// Fails if it cannot be obtained on this machine.
 pub(crate) fn usage() -> anyhow::Result<String> {
     let folder = make()?.display().to_string();
     Ok(format!(
@@ -58,9 +57,6 @@ pub(crate) fn usage() -> anyhow::Result<String> {
 }
 
 /// Returns the folder of both programs. Fetches and unpacks them unless the folder is complete.
-///
-/// # Errors
-/// Fails if they cannot be obtained on this machine.
 pub(crate) fn make() -> anyhow::Result<PathBuf> {
     /// Locked, since [`hello_xr`](super::hello_xr) sets up Monado as well.
     static TURN: Mutex<()> = Mutex::new(());
@@ -75,14 +71,12 @@ pub(crate) fn make() -> anyhow::Result<PathBuf> {
         eprintln!("fetching Monado for the tests: 170 MB, once");
         unpack_with_needs(&folder, &root, RELEASE, &packages)
     })?;
-    write_programs(&folder, &root)?;
+    write_service(&folder, &root)?;
+    write_launcher(&folder.join("run"), RUN, &root, &[], Path::new(""))?;
     Ok(folder)
 }
 
 /// Unpacks packages of a Debian release, with all dependencies, into `root`. Downloads go to `folder` meanwhile.
-///
-/// # Errors
-/// Fails if they cannot be obtained.
 pub(crate) fn unpack_with_needs(
     folder: &Path,
     root: &Path,
@@ -98,72 +92,30 @@ pub(crate) fn unpack_with_needs(
     Ok(())
 }
 
-/// Returns the beginning of a command line that runs a program with the libraries in `first`, then those of this root.
-pub(crate) fn linker(root: &Path, first: &[PathBuf]) -> String {
+/// Writes a launcher from its template. It runs a program with the libraries in `first`, then those of this root, which has
+/// the runtime.
+pub(crate) fn write_launcher(
+    launcher: &Path,
+    template: &str,
+    root: &Path,
+    first: &[&Path],
+    program: &Path,
+) -> anyhow::Result<()> {
     let usr = root.join("usr");
     let libraries = usr.join("lib/x86_64-linux-gnu");
-    let own = [
-        libraries.clone(),
-        libraries.join("lapack"),
-        libraries.join("blas"),
-        libraries.join("pulseaudio"),
-        usr.join("lib"),
-    ];
-    let path: Vec<String> = first.iter().chain(&own).map(|folder| folder.display().to_string()).collect();
-    format!(
-        "{} --library-path {}",
-        quoted(&libraries.join("ld-linux-x86-64.so.2")),
-        quoted(Path::new(&path.join(":")))
-    )
-}
-
-/// Returns the text of a launcher that runs this machine's programs with the libraries in `first`, then those of this
-/// root. The runtime is Monado unless XR_RUNTIME_JSON names another one.
-pub(crate) fn run(root: &Path, first: &[PathBuf]) -> String {
-    let usr = root.join("usr");
-    let libraries = usr.join("lib/x86_64-linux-gnu");
-    format!(
-        "# A program of this machine with the libraries that Monado has, and Monado as its OpenXR runtime.\n\
-         unset LD_LIBRARY_PATH\n\
-         export LIBGL_ALWAYS_SOFTWARE=1 LIBGL_DRIVERS_PATH={} GBM_BACKENDS_PATH={}\n\
-         export __EGL_VENDOR_LIBRARY_FILENAMES={}\n\
-         export XR_RUNTIME_JSON=${{XR_RUNTIME_JSON:-{}}}\n\
-         program=$(command -v \"$1\") || exit 127\n\
-         shift\n\
-         exec {} \"$program\" \"$@\"\n",
-        quoted(&libraries.join("dri")),
-        quoted(&libraries.join("gbm")),
-        quoted(&usr.join("share/glvnd/egl_vendor.d/50_mesa.json")),
-        quoted(&root.join(MANIFEST)),
-        linker(root, first),
-    )
-}
-
-fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
-    write_service(folder, root)?;
-    write_launcher(&folder.join("run"), &run(root, &[]))
+    let own = ["", "lapack", "blas", "pulseaudio", "../../lib"].map(|name| libraries.join(name));
+    let path = first.iter().copied().chain(own.iter().map(PathBuf::as_path));
+    let path = path.map(|folder| folder.display().to_string()).collect::<Vec<_>>().join(":");
+    let linker = quoted(&libraries.join("ld-linux-x86-64.so.2"));
+    let linker = format!("{linker} --library-path {}", quoted(Path::new(&path)));
+    let values = [("USR", &*quoted(&usr)), ("LINKER", &linker), ("PROGRAM", &quoted(program))];
+    fill_launcher(launcher, template, &values)
 }
 
 /// Writes the launcher `monado-service` for the runtime in this root.
-///
-/// # Errors
-/// Fails if the runtime is missing, or the launcher cannot be written.
 pub(crate) fn write_service(folder: &Path, root: &Path) -> anyhow::Result<()> {
-    let usr = root.join("usr");
-    let service = format!(
-        "# Monado with a simulated headset, on the CPU and without a display.\n\
-         export XRT_COMPOSITOR_NULL=1 SIMULATED_ENABLE=1 XRT_NO_STDIN=1 VK_DRIVER_FILES={}\n\
-         exec {} {}\n",
-        quoted(&usr.join("share/vulkan/icd.d/lvp_icd.json")),
-        linker(root, &[]),
-        quoted(&usr.join("bin/monado-service")),
-    );
-    for file in [usr.join("bin/monado-service"), root.join(MANIFEST)] {
-        if !file.is_file() {
-            bail!("{} is not where Debian's packages have it", file.display());
-        }
-    }
-    write_launcher(&folder.join("monado-service"), &service)
+    let service = include_str!("launchers/service.sh");
+    write_launcher(&folder.join("monado-service"), service, root, &[], Path::new(""))
 }
 
 /// A process that is killed when this is dropped.
@@ -177,9 +129,6 @@ impl Drop for Running {
 }
 
 /// Starts the service. Programs with `folder` as XDG_RUNTIME_DIR find it. Its log is `service.log` in that folder.
-///
-/// # Errors
-/// Fails with one sentence and the log if the service does not start.
 pub fn start(service: &Path, folder: &Path) -> Result<Running, String> {
     let name = service.display();
     let path = folder.join("service.log");

@@ -15,7 +15,16 @@ struct Generated {
 const GENERATED: [Generated; 3] = [
     Generated {
         what: "what is made of the synthesis shaders",
-        test: &["--package", "yoro", "--package", "yoro-wgpu", "--package", "yoro-three-tests", "--lib", "shaders"],
+        test: &[
+            "--package",
+            "yoro",
+            "--package",
+            "yoro-wgpu",
+            "--package",
+            "yoro-three-tests",
+            "--lib",
+            "shaders",
+        ],
         variable: "YORO_BLESS_SHADERS",
     },
     Generated {
@@ -31,9 +40,6 @@ const GENERATED: [Generated; 3] = [
 ];
 
 /// Renews all of it. Returns a text on what to check next, and false if a shader has a fault.
-///
-/// # Errors
-/// Fails if glslang is missing, a shader does not compile, or a file cannot be written.
 pub fn renew() -> anyhow::Result<(String, bool)> {
     setup::vulkan();
     for Generated { what, test, variable } in GENERATED {

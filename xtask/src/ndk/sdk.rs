@@ -22,9 +22,6 @@ pub fn build_tools(sdk: &Path) -> Option<PathBuf> {
 }
 
 /// Returns the path of one of the SDK's tools, from the user's SDK or else from the system.
-///
-/// # Errors
-/// Fails if the tool is not found. The error names the remedy.
 pub fn build_tool(name: &str) -> anyhow::Result<PathBuf> {
     let sdk = folder("ANDROID_HOME");
     let own = sdk.and_then(|sdk| build_tools(&sdk)).map(|tools| tools.join(name));

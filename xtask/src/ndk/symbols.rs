@@ -41,14 +41,6 @@ mod tests {
     use crate::ndk::target::MIN_API;
 
     #[test]
-    fn a_list_knows_levels_and_data() {
-        let list = "# A library.\none\ntwo:object\n@30\nthree\n";
-        let at = |api| listed(list, api).map(|symbol| (symbol.name, symbol.object)).collect::<Vec<_>>();
-        assert_eq!(at(29), [("one", false), ("two", true)]);
-        assert_eq!(at(30), [("one", false), ("two", true), ("three", false)]);
-    }
-
-    #[test]
     fn every_list_is_sorted_and_free_of_doubles() {
         for (library, list) in LISTS {
             let names: Vec<_> = listed(list, MIN_API).map(|symbol| symbol.name).collect();

@@ -12,15 +12,6 @@ pub const PAGE: u64 = 16 * 1024;
 /// The file name of the OpenXR loader that the application looks for in its APK.
 pub const LOADER: &str = "libopenxr_loader.so";
 
-/// OpenXR runtimes' libraries on system partitions. From target API level 31 on, Android only loads such a library for
-/// an application that names it. Not required, since each exists only on headsets of one maker.
-pub const NATIVE_LIBRARIES: [&str; 2] = ["libopenxr.google.so", "libopenxr_forwardloader.oculus.so"];
-
-/// Name and value of the application's properties. Android XR starts an OpenXR application in a space of its own only
-/// if it has this property.
-pub const PROPERTIES: [(&str, &str); 1] =
-    [("android.window.PROPERTY_XR_ACTIVITY_START_MODE", "XR_ACTIVITY_START_MODE_FULL_SPACE_UNMANAGED")];
-
 /// The processors that the APK contains libraries for.
 pub const ARCHITECTURES: [Architecture; 2] = [
     Architecture { triple: "aarch64-linux-android", abi: "arm64-v8a", machine: 183 },

@@ -2,32 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
+use anyhow::ensure;
 
-use crate::folders::{read, root};
-
-use super::VERSION;
-use super::android::pack;
-
+use crate::folders::{copy, read_text, remove};
 use crate::godot::{ADDON, files};
+
+use super::{VERSION, copy_licences};
 
 /// Packs `yoro-godot-VERSION.zip`, and returns its path.
 pub fn zip(folder: &Path) -> anyhow::Result<PathBuf> {
-    let mut packed = Vec::new();
+    let packed = folder.join(format!("yoro-godot-{VERSION}.zip"));
+    let content = packed.with_extension("files");
+    remove(&content)?;
     for (name, file) in files()?.into_iter().filter(|(name, _)| name.starts_with(ADDON)) {
-        packed.push((name, read(&file)?));
+        copy(&file, &content.join(name))?;
     }
-    let plugin = format!("version=\"{VERSION}\"");
-    let names_version = |(name, content): &(String, Vec<u8>)| {
-        name.ends_with("plugin.cfg") && String::from_utf8_lossy(content).contains(&plugin)
-    };
-    if !packed.iter().any(names_version) {
-        bail!("app/engines/godot/{ADDON}/plugin.cfg does not say {plugin}");
-    }
-    for name in ["LICENSE-APACHE", "LICENSE-MIT"] {
-        packed.push((format!("{ADDON}/{name}"), read(&root().join(name))?));
-    }
-    let file = folder.join(format!("yoro-godot-{VERSION}.zip"));
-    pack(&packed, &file)?;
-    Ok(file)
+    let version = format!("version=\"{VERSION}\"");
+    let plugin = read_text(&content.join(ADDON).join("plugin.cfg"))?;
+    ensure!(plugin.contains(&version), "app/engines/godot/{ADDON}/plugin.cfg does not say {version}");
+    copy_licences(&content.join(ADDON))?;
+    super::zip(&content, packed)
 }

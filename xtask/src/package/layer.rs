@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::android::library_cargo;
-use crate::folders::{copy, make, read, read_text, root, target_folder, write};
+use crate::folders::{copy, make, read_text, root, target_folder, write};
 use crate::ndk::target::{ARCHITECTURES, Architecture};
 
-use super::android::{android_manifest, licences, pack};
+use super::android::begin;
 use super::linux::Machine;
 use super::portable::needed_glibc;
 use super::texts::readme;
-use super::{VERSION, compile};
+use super::{VERSION, compile, zip};
 
 /// The file name of the library.
 pub const LIBRARY: &str = "libyoro_openxr_layer.so";
@@ -36,9 +36,6 @@ pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
 
 /// Makes the AAR in a folder of its own for this machine's processor only, for the simulated Android host. It is hardly
 /// optimized.
-///
-/// # Errors
-/// Fails if it does not compile.
 pub fn aar_for_tests() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("android/layer");
     make(&folder)?;
@@ -55,21 +52,17 @@ fn aar_for(
     build_folder: &Path,
     adapt: fn(&mut Command),
 ) -> anyhow::Result<PathBuf> {
-    let mut files = vec![
-        ("AndroidManifest.xml".to_owned(), android_manifest("org.yoro.layer").into()),
-        (format!("assets/openxr/1/api_layers/implicit.d/{MANIFEST}"), read(&manifest())?),
-    ];
-    files.extend(licences(PACKAGE)?);
+    let packed = folder.join(format!("yoro-openxr-layer-{VERSION}.aar"));
+    let content = begin(&packed, "org.yoro.layer", PACKAGE)?;
+    copy(&manifest(), &content.join("assets/openxr/1/api_layers/implicit.d").join(MANIFEST))?;
     for &architecture in architectures {
         let mut cargo = library_cargo(architecture)?;
         adapt(&mut cargo);
         let target = Some(architecture.triple);
         let (built, _) = compile(cargo, PACKAGE, "cdylib", target, LIBRARY, &[], build_folder)?;
-        files.push((format!("jni/{}/{LIBRARY}", architecture.abi), read(&built.join(LIBRARY))?));
+        copy(&built.join(LIBRARY), &content.join("jni").join(architecture.abi).join(LIBRARY))?;
     }
-    let packed = folder.join(format!("yoro-openxr-layer-{VERSION}.aar"));
-    pack(&files, &packed)?;
-    Ok(packed)
+    zip(&content, packed)
 }
 
 /// Builds the library for Linux, and returns its path.

@@ -15,7 +15,7 @@ use crate::{arm64, cargo, notices};
 
 use super::portable::{self, OLDEST_GLIBC};
 use super::texts::{cmake, cmake_version, manual, pkg_config, readme, soname, with_links};
-use super::{VERSION, build};
+use super::{VERSION, build, copy_licences};
 
 /// The first page of the C library's archive.
 const README: &str = include_str!("templates/README.library.txt");
@@ -41,9 +41,6 @@ impl Machine {
     }
 
     /// Returns cargo, whose output does not contain the builder's folders.
-    ///
-    /// # Errors
-    /// Fails if something cannot be obtained on this machine.
     pub fn cargo(self) -> anyhow::Result<Command> {
         let mut cargo = if self == Self::Native { cargo::cargo() } else { arm64::cargo()? };
         portable::set_flags(&mut cargo);
@@ -51,18 +48,12 @@ impl Machine {
     }
 
     /// Returns cargo's output folder.
-    ///
-    /// # Errors
-    /// Fails if the target folder is unknown.
     pub fn folder(self) -> anyhow::Result<PathBuf> {
         let target = target_folder()?;
         Ok(if self == Self::Native { target } else { target.join("android/arm64/capi") })
     }
 
     /// Removes symbols from a file.
-    ///
-    /// # Errors
-    /// Fails if the tool is missing or fails.
     pub fn strip(self, arguments: &[&str], file: &Path) -> anyhow::Result<()> {
         let strip = if self == Self::Native { "strip" } else { "llvm-strip" };
         run(Command::new(strip).args(arguments).arg(file)).map(drop)
@@ -70,9 +61,6 @@ impl Machine {
 
     /// Packs `NAME-VERSION-linux-ARCHITECTURE.tar.xz` in `folder`, and returns its path. `fill` writes the files, and returns
     /// the README. The licences, and the notices of what `package` contains, are written to `documents` in the archive.
-    ///
-    /// # Errors
-    /// Fails if `fill` fails, or a file cannot be written.
     pub fn pack(
         self,
         folder: &Path,
@@ -88,9 +76,7 @@ impl Machine {
         let readme = fill(&content)?;
         write(&content.join("README.md"), readme)?;
         let documents = content.join(documents);
-        for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
-            copy(&root().join(licence), &documents.join(licence))?;
-        }
+        copy_licences(&documents)?;
         let notices = notices::text(package, &format!("{architecture}-unknown-linux-gnu"), &[])?;
         write(&documents.join(notices::FILE), notices)?;
         let packed = tar(folder, &name)?;

@@ -16,8 +16,9 @@ use std::process::{Command, Stdio};
 use anyhow::{Context as _, bail};
 use clap::ValueEnum;
 
+use crate::android::check;
 use crate::apt::{self, Need};
-use crate::folders::{make, root, target_folder};
+use crate::folders::{copy, make, remove, root, target_folder};
 
 use linux::Machine;
 
@@ -48,9 +49,6 @@ pub enum Target {
 }
 
 /// Makes these packages, or all if none is given, and returns their paths.
-///
-/// # Errors
-/// Fails if something is missing or does not compile.
 pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
     let targets = if targets.is_empty() { Target::value_variants() } else { targets };
     let folder = target_folder()?.join("package");
@@ -69,9 +67,6 @@ pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
 }
 
 /// Installs the tools by which people take the package for Linux into their programs.
-///
-/// # Errors
-/// Fails if one is missing that cannot be installed here.
 pub fn fetch_users_tools() -> anyhow::Result<PathBuf> {
     let needs = || {
         let tools: [(_, &[_]); 5] = [
@@ -85,6 +80,19 @@ pub fn fetch_users_tools() -> anyhow::Result<PathBuf> {
     };
     apt::install_missing(needs, true)?;
     Ok(PathBuf::new())
+}
+
+/// Packs the files of a folder as a zip, removes the folder, and returns the zip's path.
+pub fn zip(content: &Path, packed: PathBuf) -> anyhow::Result<PathBuf> {
+    check::pack(&packed, content)?;
+    remove(content)?;
+    println!("{}", packed.display());
+    Ok(packed)
+}
+
+/// Copies yoro's own licences into a folder.
+pub fn copy_licences(folder: &Path) -> anyhow::Result<()> {
+    ["LICENSE-APACHE", "LICENSE-MIT"].iter().try_for_each(|name| copy(&root().join(name), &folder.join(name)))
 }
 
 /// A library built by cargo.

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
+use anyhow::ensure;
 
 use crate::console::run;
 use crate::folders::{read, root, write};
@@ -13,30 +13,8 @@ use crate::rust::anonymous_paths;
 /// The oldest supported glibc, which Debian 10, Ubuntu 18.10 and RHEL 8 have.
 pub const OLDEST_GLIBC: (u32, u32) = (2, 28);
 
-/// Rust's std calls `stat64` and `fstat64`, which glibc exports only since 2.33. The functions that older headers
-/// turned these calls into are still exported by newer versions. `gettid` exists since 2.30; std works without it, but
-/// LLD does not record that in the file.
-const OLD_FUNCTIONS: &str = r#"
-#if defined(__x86_64__)
-#define BASE "GLIBC_2.2.5"
-#define STAT_VERSION 1
-#define GETTID 186
-#elif defined(__aarch64__)
-#define BASE "GLIBC_2.17"
-#define STAT_VERSION 0
-#define GETTID 178
-#endif
-extern long syscall(long number, ...);
-extern int old_stat(int version, const char *path, void *result);
-extern int old_fstat(int version, int file, void *result);
-__asm__(".symver old_stat, __xstat64@" BASE);
-__asm__(".symver old_fstat, __fxstat64@" BASE);
-__attribute__((visibility("hidden"))) int stat64(const char *path, void *result) {
-  return old_stat(STAT_VERSION, path, result);
-}
-__attribute__((visibility("hidden"))) int fstat64(int file, void *result) { return old_fstat(STAT_VERSION, file, result); }
-__attribute__((visibility("hidden"))) int gettid(void) { return (int)syscall(GETTID); }
-"#;
+/// What Rust's std calls of newer versions, in terms of older functions.
+const OLD_FUNCTIONS: &str = include_str!("templates/old_functions.c");
 
 /// Compiles these functions with a C compiler and its arguments, and returns the object file.
 pub fn old_functions(compiler: &mut Command, folder: &Path) -> anyhow::Result<PathBuf> {
@@ -56,41 +34,32 @@ pub fn set_flags(cargo: &mut Command) {
 
 /// Checks that a library runs with the oldest supported glibc, and contains none of the builder's folders.
 pub fn check(file: &Path) -> anyhow::Result<()> {
-    let content = read(file)?;
-    let newest = newest_glibc(&content);
-    if newest.is_some_and(|newest| newest > OLDEST_GLIBC) {
-        let ((major, minor), (old_major, old_minor)) = (newest.unwrap_or_default(), OLDEST_GLIBC);
-        bail!(
-            "{} needs glibc {major}.{minor}, newer than {old_major}.{old_minor}: `objdump -T` names the functions; give \
-             older ones in xtask/src/package/portable.rs",
-            file.display()
-        );
-    }
-    check_folders(file, &content)
-}
-
-/// Checks that a program or a library contains none of the builder's folders, and returns the oldest glibc that it runs
-/// with.
-pub fn needed_glibc(file: &Path) -> anyhow::Result<(u32, u32)> {
-    let content = read(file)?;
-    check_folders(file, &content)?;
-    newest_glibc(&content).with_context(|| format!("{} names no version of glibc", file.display()))
-}
-
-fn check_folders(file: &Path, content: &[u8]) -> anyhow::Result<()> {
-    let home = std::env::home_dir();
-    for folder in [Some(root()), home.as_deref().map(Path::to_owned)].into_iter().flatten() {
-        let name = folder.to_string_lossy().into_owned();
-        // A home such as / or /root does not identify anybody, only folders in it do.
-        if holds(content, format!("{name}/").as_bytes()) {
-            bail!("{} holds the builder's folder {name}: remap it", file.display());
-        }
-    }
+    let (major, minor) = needed_glibc(file)?;
+    ensure!(
+        (major, minor) <= OLDEST_GLIBC,
+        "{} needs glibc {major}.{minor}, which is too new: `objdump -T` names the functions; give older ones in \
+         xtask/src/package/templates/old_functions.c",
+        file.display()
+    );
     Ok(())
 }
 
-fn holds(content: &[u8], text: &[u8]) -> bool {
-    content.windows(text.len()).any(|window| window == text)
+/// Checks that a program or a library contains none of the builder's folders, and returns the oldest glibc that it runs
+/// with: any if it names none.
+pub fn needed_glibc(file: &Path) -> anyhow::Result<(u32, u32)> {
+    let content = read(file)?;
+    check_folders(file, &content)?;
+    Ok(newest_glibc(&content).unwrap_or_default())
+}
+
+fn check_folders(file: &Path, content: &[u8]) -> anyhow::Result<()> {
+    for folder in [root()].into_iter().chain(std::env::home_dir()) {
+        // A home such as / or /root does not identify anybody, only folders in it do.
+        let name = format!("{}/", folder.display());
+        let is_in = content.windows(name.len()).any(|window| window == name.as_bytes());
+        ensure!(!is_in, "{} holds the builder's folder {name}: remap it", file.display());
+    }
+    Ok(())
 }
 
 /// Returns the newest glibc version among a library's dynamic symbols.

@@ -14,7 +14,7 @@ fn series() -> String {
 }
 
 /// Returns a template with this version and with a value for each name, which is written `@NAME@` there.
-fn filled(template: &str, values: &[(&str, &str)]) -> String {
+pub fn filled(template: &str, values: &[(&str, &str)]) -> String {
     let with_version = template.replace("@VERSION@", VERSION);
     values.iter().fold(with_version, |text, (name, value)| text.replace(&format!("@{name}@"), value))
 }

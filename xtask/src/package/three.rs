@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
+use anyhow::ensure;
 
-use super::VERSION;
+use super::{VERSION, copy_licences};
 use crate::console::run;
-use crate::folders::{copy, copy_folder, read_text, remove, root};
+use crate::folders::{copy_folder, read_text, remove, root};
 use crate::web::npm;
 
 const SOURCE: &str = "app/engines/three";
@@ -16,13 +16,10 @@ pub fn tarball(folder: &Path) -> anyhow::Result<PathBuf> {
     let staged = folder.join("three");
     remove(&staged)?;
     copy_folder(&root().join(SOURCE), &staged)?;
-    for name in ["LICENSE-APACHE", "LICENSE-MIT"] {
-        copy(&root().join(name), &staged.join(name))?;
-    }
+    copy_licences(&staged)?;
     let manifest = read_text(&staged.join("package.json"))?;
-    if !manifest.contains(&format!("\"version\": \"{VERSION}\"")) {
-        bail!("{SOURCE}/package.json does not say \"version\": \"{VERSION}\"");
-    }
+    let version = format!("\"version\": \"{VERSION}\"");
+    ensure!(manifest.contains(&version), "{SOURCE}/package.json does not say {version}");
     let mut command = npm();
     command.args(["pack", "--silent", "--pack-destination"]).arg(folder).current_dir(&staged);
     run(&mut command)?;

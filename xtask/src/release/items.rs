@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 use clap::ValueEnum;
 
-use crate::android::{self, Options, check};
+use crate::android::{self, Options};
 use crate::folders::{copy, copy_folder, make, remove, target_folder};
 use crate::package::linux::Machine;
-use crate::package::{Target, VERSION, package};
+use crate::package::{Target, VERSION, package, zip};
 use crate::{cargo, kit, lint};
 
 use super::{bills, program};
@@ -38,10 +38,7 @@ pub enum Item {
     Site,
 }
 
-/// What RELEASE.md says about a file, as cells of a table: for whom, tested by, not tested on, same bytes again.
-pub struct Description(pub &'static str);
-
-/// The descriptions.
+/// What RELEASE.md says about files, as cells of a table: for whom, tested by, not tested on, same bytes again.
 const FILES: &str = include_str!("files.txt");
 
 impl Item {
@@ -51,9 +48,6 @@ impl Item {
     }
 
     /// Makes the item's files, and returns their paths. The site is a folder, and made of the others.
-    ///
-    /// # Errors
-    /// Fails if something is missing or does not compile.
     pub fn make(self) -> anyhow::Result<Vec<PathBuf>> {
         let folder = target_folder()?.join("package");
         make(&folder)?;
@@ -65,7 +59,13 @@ impl Item {
             Item::Apk => apks(&folder),
             Item::Layer => package(&[Target::LayerLinux, Target::LayerLinuxAarch64, Target::AndroidLayer]),
             Item::Library => package(&[Target::Linux, Target::LinuxAarch64, Target::Android]),
-            Item::Kit => Ok(vec![zip(&kit::kit()?, &format!("yoro-kit-{VERSION}"), &folder)?]),
+            Item::Kit => {
+                let packed = folder.join(format!("yoro-kit-{VERSION}.zip"));
+                let content = folder.join("kit.files");
+                remove(&content)?;
+                copy_folder(&kit::kit()?, &content.join(format!("yoro-kit-{VERSION}")))?;
+                Ok(vec![zip(&content, packed)?])
+            }
             Item::Godot => package(&[Target::Godot]),
             Item::Crates => crates(),
             Item::Three => package(&[Target::Three]),
@@ -89,18 +89,6 @@ fn apks(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(made)
 }
 
-/// Packs a folder as a zip whose files are in a folder of the same name.
-fn zip(from: &Path, name: &str, folder: &Path) -> anyhow::Result<PathBuf> {
-    let content = folder.join(format!("{name}.files"));
-    remove(&content)?;
-    copy_folder(from, &content.join(name))?;
-    let packed = folder.join(format!("{name}.zip"));
-    check::pack(&packed, &content)?;
-    remove(&content)?;
-    println!("{}", packed.display());
-    Ok(packed)
-}
-
 /// Packs the published crates, and returns their files.
 fn crates() -> anyhow::Result<Vec<PathBuf>> {
     let target = target_folder()?;
@@ -108,33 +96,25 @@ fn crates() -> anyhow::Result<Vec<PathBuf>> {
     let kinds: [(&[&str], PathBuf); 2] =
         [(&lint::PUBLISHED, target.clone()), (&["bevy_yoro"], target.join("bevy"))];
     for (arguments, (names, target)) in lint::packing().into_iter().zip(kinds) {
-        let place = target.display().to_string();
-        if !cargo::succeeds(&[&arguments[..], &["--target-dir", &place]].concat(), &[]) {
-            bail!("the crates cannot be packed: see above");
-        }
+        let mut command = cargo::cargo();
+        command.args(arguments).arg("--target-dir").arg(&target);
+        cargo::perform(&mut command, "the crates cannot be packed")?;
         made.extend(names.iter().map(|name| target.join("package").join(format!("{name}-{VERSION}.crate"))));
     }
     Ok(made)
 }
 
-impl Description {
-    /// Returns the description of a file.
-    ///
-    /// # Errors
-    /// Fails if it is no file of a release.
-    pub fn of(file: &Path) -> anyhow::Result<Self> {
-        let name = file.file_name().unwrap_or_default().to_string_lossy();
-        let rows =
-            FILES.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once(" | "));
-        let mut fitting = rows.filter(|(parts, _)| {
-            let (beginning, part) = parts.split_once(' ').unwrap_or_default();
-            name.starts_with(beginning) && name.contains(part)
-        });
-        let (_, cells) = fitting
-            .next()
-            .with_context(|| format!("{} is no file of a release: take it away", file.display()))?;
-        Ok(Self(cells))
-    }
+/// Returns what RELEASE.md says about a file.
+pub fn description(file: &Path) -> anyhow::Result<&'static str> {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let mut rows =
+        FILES.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once(" | "));
+    let is_for = |(parts, _): &(&str, &str)| {
+        let (beginning, part) = parts.split_once(' ').unwrap_or_default();
+        name.starts_with(beginning) && name.contains(part)
+    };
+    let row = rows.find(is_for).with_context(|| format!("{} is no file of a release", file.display()))?;
+    Ok(row.1)
 }
 
 #[cfg(test)]
@@ -155,9 +135,9 @@ mod tests {
             ("bevy_yoro-0.1.0.crate", "Rust"),
             ("yoro-0.1.0-linux-aarch64.tar.xz", "the program: render"),
         ] {
-            let description = Description::of(Path::new(name)).unwrap();
-            assert!(description.0.starts_with(title), "{name}: {}", description.0);
+            let description = description(Path::new(name)).unwrap();
+            assert!(description.starts_with(title), "{name}: {description}");
         }
-        assert!(Description::of(Path::new("notes.txt")).is_err());
+        assert!(description(Path::new("notes.txt")).is_err());
     }
 }

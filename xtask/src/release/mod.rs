@@ -27,9 +27,6 @@ pub const SUMS: &str = "SHA256SUMS";
 pub const SUMMARY: &str = "RELEASE.md";
 
 /// Builds these items, or all if none is given, into a folder. Files of other items that are in it stay.
-///
-/// # Errors
-/// Fails if something is missing or does not compile, or the folder has files of another commit.
 pub fn release(out: &Path, only: &[Item]) -> anyhow::Result<()> {
     let start = Instant::now();
     let out = absolute(out).context("the current folder is gone: change to another")?;

@@ -3,32 +3,23 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
-
-use crate::cargo::announce;
 use crate::console::run;
 use crate::folders::{copy, copy_folder, target_folder};
 use crate::package::layer;
 use crate::package::linux::Machine;
 use crate::package::portable::needed_glibc;
 use crate::package::texts::readme;
-use crate::{arm64, setup, web};
+use crate::{arm64, cargo, setup, web};
 
 /// Makes `yoro-VERSION-linux-ARCHITECTURE.tar.xz` with the page that `yoro serve` shows, and returns its path.
-///
-/// # Errors
-/// Fails if the program, the layer or the page does not compile, or the program renders nothing, for arm64 in qemu.
 pub fn archive(machine: Machine, folder: &Path) -> anyhow::Result<PathBuf> {
     setup::ensure()?;
     // A target folder of its own, since its flags differ from those of all other builds.
     let output = target_folder()?.join("program");
     let mut arguments = vec!["build", "--locked", "--release", "--package", "yoro-cli", "--bin", "yoro"];
     arguments.extend(machine.target().iter().flat_map(|target| ["--target", target]));
-    announce(&arguments);
-    let status = machine.cargo()?.args(arguments).env("CARGO_TARGET_DIR", &output).status();
-    if !status.context("cargo cannot be started")?.success() {
-        bail!("the program does not compile: see above");
-    }
+    let mut build = machine.cargo()?;
+    cargo::perform(build.args(arguments).env("CARGO_TARGET_DIR", &output), "the program does not compile")?;
     let built = machine.target().map_or(output.clone(), |target| output.join(target)).join("release/yoro");
     let mut yoro = match machine {
         Machine::Native => Command::new(&built),

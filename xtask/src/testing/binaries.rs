@@ -35,9 +35,6 @@ impl Binary {
     }
 
     /// Returns the names of the program's tests in the order in which it runs them.
-    ///
-    /// # Errors
-    /// Fails if the program does not start.
     pub fn list(&self) -> anyhow::Result<Vec<String>> {
         let output = self.command().args(["--list", "--format", "terse"]).stderr(Stdio::inherit()).output();
         let output = output.with_context(|| format!("{} cannot be started", self.executable.display()))?;
@@ -50,9 +47,6 @@ impl Binary {
 }
 
 /// Compiles the tests of these packages, or of the whole workspace.
-///
-/// # Errors
-/// Fails if something does not compile.
 pub fn compile(packages: &[String]) -> anyhow::Result<Vec<Binary>> {
     let mut arguments = vec!["test", "--no-run", "--message-format=json-render-diagnostics"];
     arguments.extend(cargo::choice(packages));

@@ -10,7 +10,6 @@ use anyhow::{Context as _, anyhow, bail};
 use crate::maintain::estimate::Compilers;
 
 use super::binaries::Program;
-use super::summary::Summary;
 use crate::maintain::{hello_xr, monado};
 use crate::{android, apt, arm64, package, setup, web};
 
@@ -20,101 +19,70 @@ struct Item {
     what: &'static str,
     /// `YORO_TEST_variable` tells the tests its path. If `YORO_TEST_WITHOUT_variable` is set, the tests skip it.
     variable: &'static str,
-    /// The tests that need it: the package, and a part of the tests' names.
-    users: &'static [(&'static str, &'static str)],
+    /// The tests that need it: packages, each with a part of the tests' names.
+    users: &'static str,
     /// Installs and fetches it, or what it is built from. If this fails, its tests are skipped.
-    fetch: fn() -> anyhow::Result<PathBuf>,
+    fetch: Make,
     /// Builds it. If this fails, no tests run.
-    build: Option<fn() -> anyhow::Result<PathBuf>>,
+    build: Option<Make>,
 }
 
-/// A row of the table. The users are a package and a part of their names each.
-const fn item(
+type Make = fn() -> anyhow::Result<PathBuf>;
+
+const fn fetched(what: &'static str, variable: &'static str, users: &'static str, fetch: Make) -> Item {
+    Item { what, variable, users, fetch, build: None }
+}
+
+const fn built(
     what: &'static str,
     variable: &'static str,
-    users: &'static [(&'static str, &'static str)],
-    fetch: fn() -> anyhow::Result<PathBuf>,
-    build: Option<fn() -> anyhow::Result<PathBuf>>,
+    users: &'static str,
+    fetch: Make,
+    build: Make,
 ) -> Item {
-    Item { what, variable, users, fetch, build }
+    Item { what, variable, users, fetch, build: Some(build) }
 }
 
 static ITEMS: [Item; 13] = [
-    item(
-        "the page",
-        "WEB",
-        &[("yoro-cli", "web::")],
-        page_can_be_built,
-        Some(|| web::build().and(this_program())),
-    ),
-    item(
-        "the example of yoro-wgpu for browsers",
+    built("the page", "WEB", "yoro-cli web::", page_can_be_built, || web::build().and(this_program())),
+    built(
+        "the example of yoro-wgpu",
         "WGPU_WEB",
-        &[("yoro-wgpu", "the_example_in_a_browser")],
+        "yoro-wgpu the_example_in_a_browser",
         page_can_be_built,
-        Some(|| web::build_example().and(this_program())),
+        || web::build_example().and(this_program()),
     ),
-    item(
-        "the WebXR emulator",
-        "WEBXR",
-        &[("yoro-cli", "web::"), ("yoro-three-tests", "headsets")],
-        web::emulator,
-        None,
-    ),
-    item("three.js", "THREE", &[("yoro-three-tests", "")], web::three_modules, None),
+    fetched("the WebXR emulator", "WEBXR", "yoro-cli web::; yoro-three-tests headsets", web::emulator),
+    fetched("three.js", "THREE", "yoro-three-tests ", web::three_modules),
     // The names of the program's tests do not show which of them open a page.
-    item(
-        "Chromium",
-        "CHROMIUM",
-        &[("yoro-cli", ""), ("yoro-three-tests", "")],
-        || setup::browser().context("it cannot be installed"),
-        None,
-    ),
-    item("Monado", "MONADO", &[("yoro-cli", "monado")], monado::make, None),
+    fetched("Chromium", "CHROMIUM", "yoro-cli ; yoro-three-tests ", || {
+        setup::browser().context("it cannot be installed")
+    }),
+    fetched("Monado", "MONADO", "yoro-cli monado", monado::make),
     // Monado's drivers, and its launcher for this machine's programs.
-    item("Mesa 25", "MULTIVIEW", &[("yoro-tests", "multiview::")], || Ok(monado::make()?.join("run")), None),
-    item(
-        "hello_xr",
-        "HELLO_XR",
-        &[("yoro-openxr-layer", "hello_xr"), ("yoro-cli", "through_the_layer")],
-        hello_xr::make,
-        None,
-    ),
-    item(
-        "shader compilers for mobile GPUs",
-        "SHADER_COMPILERS",
-        &[("yoro-tests", "shader_cost::")],
-        || Ok(Compilers::make()?.folder().to_owned()),
-        None,
-    ),
-    item(
-        "the C library's package",
-        "C_PACKAGE",
-        &[("yoro-c", "the_package")],
-        package::fetch_users_tools,
-        Some(|| package::package(&[package::Target::Linux])?.pop().context("no package was made")),
-    ),
-    item(
+    fetched("Mesa 25", "MULTIVIEW", "yoro-tests multiview::", || Ok(monado::make()?.join("run"))),
+    fetched("hello_xr", "HELLO_XR", "yoro-openxr-layer hello_xr; yoro-cli through_the_layer", hello_xr::make),
+    fetched("shader compilers for mobile GPUs", "SHADER_COMPILERS", "yoro-tests shader_cost::", || {
+        Ok(Compilers::make()?.folder().to_owned())
+    }),
+    built("the C library's package", "C_PACKAGE", "yoro-c the_package", package::fetch_users_tools, || {
+        package::package(&[package::Target::Linux])?.pop().context("no package was made")
+    }),
+    built(
         "the APK (cargo xtask doctor)",
         "APK",
-        &[("yoro-android-host", "")],
+        "yoro-android-host ",
         android::ready_for_tests,
-        Some(android::apk_for_tests),
+        android::apk_for_tests,
     ),
-    item(
+    built(
         "the Android layer",
         "ANDROID_LAYER",
-        &[("yoro-android-host", "layer")],
+        "yoro-android-host layer",
         android::ready_for_tests,
-        Some(package::layer_for_tests),
+        package::layer_for_tests,
     ),
-    item(
-        "the simulated Android host for arm64",
-        "ARM64_HOST",
-        &[("yoro-android-host", "arm64")],
-        arm64::fetch,
-        Some(arm64::build_host),
-    ),
+    built("Android on arm64", "ARM64_HOST", "yoro-android-host arm64", arm64::fetch, arm64::build_host),
 ];
 
 fn this_program() -> anyhow::Result<PathBuf> {
@@ -127,7 +95,11 @@ fn page_can_be_built() -> anyhow::Result<PathBuf> {
 
 impl Item {
     fn is_for(&self, package: &str, test: &str) -> bool {
-        self.users.iter().any(|(user, part)| *user == package && test.contains(part))
+        self.users().any(|(user, part)| user == package && test.contains(part))
+    }
+
+    fn users(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        self.users.split("; ").filter_map(|user| user.split_once(' '))
     }
 }
 
@@ -138,60 +110,44 @@ pub fn is_needed(package: &str, test: &str) -> bool {
 
 /// Returns patterns in the table that match no test, for example because it was renamed.
 pub fn stale(programs: &[Program]) -> Vec<String> {
-    let users = ITEMS.iter().flat_map(|item| item.users);
     let fits = |(package, part): &(&str, &str)| {
-        programs
-            .iter()
-            .any(|(binary, names)| binary.package == *package && names.iter().any(|name| name.contains(part)))
+        let mut own = programs.iter().filter(|(binary, _)| binary.package == *package);
+        own.any(|(_, names)| names.iter().any(|name| name.contains(part)))
     };
-    users.filter(|user| !fits(user)).map(|(package, part)| format!("{package} {part}")).collect()
+    let users = ITEMS.iter().flat_map(Item::users).filter(|user| !fits(user));
+    users.map(|(package, part)| format!("{package} {part}")).collect()
 }
 
 /// Installations and downloads that are running in threads.
 pub struct Preparation<'scope> {
-    system: Option<ScopedJoinHandle<'scope, anyhow::Result<Libraries>>>,
+    system: Option<ScopedJoinHandle<'scope, anyhow::Result<Equipment>>>,
     items: Vec<(&'static Item, ScopedJoinHandle<'scope, anyhow::Result<PathBuf>>)>,
 }
 
-/// The optional system libraries, true if available.
-#[derive(Clone, Copy, Debug, Default)]
-struct Libraries {
-    osmesa: bool,
-    vulkan: bool,
-}
-
-/// The equipment available on this machine.
+/// The equipment of this machine.
 #[derive(Debug, Default)]
 pub struct Equipment {
-    libraries: Libraries,
     /// Paths by variable; `None` if the item is not available.
     items: Vec<(&'static str, Option<PathBuf>)>,
     /// A sentence for each item that is not available.
     pub absent: Vec<String>,
+    /// How long each item was built, in seconds.
+    pub seconds: Vec<(&'static str, f64)>,
 }
-
-/// An item that was fetched and built, if it is available here.
-struct Made {
-    item: &'static Item,
-    path: Option<PathBuf>,
-    seconds: f64,
-}
-
-/// What was fetched and built.
-#[derive(Default)]
-pub struct Prepared(Vec<Made>);
 
 impl<'scope> Preparation<'scope> {
     /// Starts the preparation for the selected tests, or for all tests.
-    ///
-    /// # Errors
-    /// Fails if a library is missing that this program cannot install.
     pub fn begin(scope: &'scope Scope<'scope, '_>, programs: Option<&[Program]>) -> anyhow::Result<Self> {
         // sudo may ask for a password, and other systems get instructions: not in the background of cargo.
         if !apt::installs_by_itself() {
             setup::ensure()?;
         }
-        let libraries = || Ok(Libraries { osmesa: setup::ensure()?, vulkan: setup::vulkan() });
+        let libraries = || {
+            let mut equipment = Equipment::default();
+            equipment.add("OSMesa", "OSMESA", setup::ensure()?.then(PathBuf::new));
+            equipment.add("Vulkan or its validation layer", "VULKAN", setup::vulkan().then(PathBuf::new));
+            Ok(equipment)
+        };
         let wanted = |item: &&Item| match programs {
             None => true,
             // A few selected tests are not worth the wait for a browser, so they only use an installed one.
@@ -206,31 +162,13 @@ impl<'scope> Preparation<'scope> {
     }
 
     /// Waits for the system libraries, which all tests need.
-    ///
-    /// # Errors
-    /// Fails if one is missing.
     pub fn libraries(&mut self) -> anyhow::Result<Equipment> {
-        let mut equipment = Equipment::default();
-        if let Some(system) = self.system.take() {
-            equipment.libraries = join(system)?;
-        }
-        for (here, what) in [
-            (equipment.libraries.osmesa, "OSMesa"),
-            (equipment.libraries.vulkan, "Vulkan or its validation layer"),
-        ] {
-            if !here {
-                equipment.absent.push(format!("{what} is not here: what needs it was left out"));
-            }
-        }
-        Ok(equipment)
+        self.system.take().map_or_else(|| Ok(Equipment::default()), join)
     }
 
     /// Waits for the other items, and builds those that have to be built.
-    ///
-    /// # Errors
-    /// Fails if something cannot be built.
-    pub fn finish(self) -> anyhow::Result<Prepared> {
-        let mut prepared = Prepared::default();
+    pub fn finish(self) -> anyhow::Result<Equipment> {
+        let mut equipment = Equipment::default();
         for (item, fetching) in self.items {
             let fetched = join(fetching);
             let start = Instant::now();
@@ -238,13 +176,14 @@ impl<'scope> Preparation<'scope> {
                 (Ok(_), Some(build)) => Some(build()?),
                 (Ok(path), None) => Some(path),
                 (Err(error), _) => {
-                    eprintln!("warning: {} cannot be had here: its tests are left out: {error:#}", item.what);
+                    eprintln!("warning: {}: {error:#}", item.what);
                     None
                 }
             };
-            prepared.0.push(Made { item, path, seconds: start.elapsed().as_secs_f64() });
+            equipment.add(item.what, item.variable, path);
+            equipment.seconds.push((item.what, start.elapsed().as_secs_f64()));
         }
-        Ok(prepared)
+        Ok(equipment)
     }
 }
 
@@ -253,25 +192,21 @@ fn join<T>(handle: ScopedJoinHandle<'_, anyhow::Result<T>>) -> anyhow::Result<T>
 }
 
 impl Equipment {
-    /// Adds what was prepared.
-    pub fn add(&mut self, prepared: Prepared, summary: &mut Summary) {
-        for Made { item, path, seconds } in prepared.0 {
-            summary.add_phase(&format!("  of it {}", item.what), seconds);
-            if path.is_none() {
-                self.absent.push(format!("{} cannot be had here: its tests were left out", item.what));
-            }
-            self.items.push((item.variable, path));
+    fn add(&mut self, what: &str, variable: &'static str, path: Option<PathBuf>) {
+        if path.is_none() {
+            self.absent.push(format!("{what} cannot be had here: its tests were left out"));
         }
+        self.items.push((variable, path));
+    }
+
+    /// Adds what was prepared meanwhile.
+    pub fn extend(&mut self, other: Self) {
+        self.items.extend(other.items);
+        self.absent.extend(other.absent);
     }
 
     /// Sets the variables that tell a test program what is available.
     pub fn set_variables(&self, command: &mut Command) {
-        if !self.libraries.osmesa {
-            command.env("YORO_TEST_WITHOUT_OSMESA", "1");
-        }
-        if !self.libraries.vulkan {
-            command.env("YORO_TEST_WITHOUT_VULKAN", "1");
-        }
         for (variable, path) in &self.items {
             match path {
                 Some(path) => command.env(format!("YORO_TEST_{variable}"), path),
@@ -299,14 +234,11 @@ mod tests {
 
     #[test]
     fn variables_say_what_is_here_and_what_is_not() {
-        let equipment = Equipment {
-            libraries: Libraries { osmesa: true, vulkan: false },
-            items: vec![("APK", Some("yoro.apk".into())), ("MONADO", None)],
-            ..Equipment::default()
-        };
+        let items = vec![("APK", Some("yoro.apk".into())), ("MONADO", None)];
+        let equipment = Equipment { items, ..Equipment::default() };
         let mut command = Command::new("test");
         equipment.set_variables(&mut command);
         let set: Vec<_> = command.get_envs().filter_map(|(name, _)| name.to_str()).collect();
-        assert_eq!(set, ["YORO_TEST_APK", "YORO_TEST_WITHOUT_MONADO", "YORO_TEST_WITHOUT_VULKAN"]);
+        assert_eq!(set, ["YORO_TEST_APK", "YORO_TEST_WITHOUT_MONADO"]);
     }
 }

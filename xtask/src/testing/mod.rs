@@ -26,7 +26,7 @@ use crate::folders::target_folder;
 use crate::{apt, setup};
 
 use binaries::Program;
-use equipment::{Equipment, Preparation, Prepared};
+use equipment::{Equipment, Preparation};
 use process::Finished;
 use summary::Summary;
 
@@ -88,9 +88,6 @@ struct Plan {
 }
 
 /// Compiles and runs the selected tests of the workspace, or all, and prints a summary.
-///
-/// # Errors
-/// Fails if a test fails twice, does not compile, or none is selected.
 pub fn test(options: &Options) -> anyhow::Result<()> {
     let mut summary = Summary::begin();
     apt::install_missing(|| vec![setup::cpp()], true)?;
@@ -118,10 +115,14 @@ pub fn test(options: &Options) -> anyhow::Result<()> {
         let workers =
             options.jobs.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
         // The first worker builds, since cargo keeps but one processor busy while it links and optimizes whole programs.
-        let mut prepared = Ok(Prepared::default());
+        let mut prepared = Ok(Equipment::default());
         let prepare = || prepared = preparation.finish();
         run.all(plan.first, workers, "running tests, building equipment", &mut summary, prepare);
-        run.equipment.add(prepared?, &mut summary);
+        let prepared = prepared?;
+        for (what, seconds) in &prepared.seconds {
+            summary.add_phase(&format!("  of it {what}"), *seconds);
+        }
+        run.equipment.extend(prepared);
         run.all(plan.equipped, workers, "running tests with equipment", &mut summary, || ());
         run.all(plan.alone, 1, "running tests alone", &mut summary, || ());
         run.retry(&mut summary);

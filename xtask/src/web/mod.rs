@@ -12,10 +12,9 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail, ensure};
 
-use crate::cargo::{self, announce};
 use crate::folders::{copy, remove, root, target_folder, write};
 use crate::rust::{Panic, Rust, anonymous_paths, build_std};
-use crate::{console, notices};
+use crate::{cargo, console, notices};
 
 pub use npm::{check_types, emulator, npm, three as three_modules};
 pub use serve::serve;
@@ -29,9 +28,6 @@ const EXAMPLE: &str = "offscreen";
 const BUDGET: u64 = 1_200_000;
 
 /// Returns the folder of the page or, with `wgpu`, of the example of yoro-wgpu. Builds it unless it is taken `as_built`.
-///
-/// # Errors
-/// Fails as [`build`] does, or if it has not been built.
 pub fn folder(wgpu: bool, as_built: bool) -> anyhow::Result<PathBuf> {
     if !as_built {
         return if wgpu { build_example() } else { build() };
@@ -42,9 +38,6 @@ pub fn folder(wgpu: bool, as_built: bool) -> anyhow::Result<PathBuf> {
 }
 
 /// Builds the example of yoro-wgpu for browsers with WebGPU, and returns its folder, `target/web-wgpu`.
-///
-/// # Errors
-/// Fails if something is missing or does not compile.
 pub fn build_example() -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let module = compile(&["--package", "yoro-wgpu", "--example", EXAMPLE], &format!("examples/{EXAMPLE}"))?;
@@ -64,9 +57,6 @@ pub fn build_example() -> anyhow::Result<PathBuf> {
 }
 
 /// Builds the page, and returns its folder, `target/web`. Without npm, it lacks the example for three.js.
-///
-/// # Errors
-/// Fails if something is missing or does not compile, or the module is too large.
 pub fn build() -> anyhow::Result<PathBuf> {
     build_with(|error| {
         println!("the example for three.js was left out: {error:#}");
@@ -108,9 +98,6 @@ fn build_with(without: fn(anyhow::Error) -> anyhow::Result<String>) -> anyhow::R
 }
 
 /// Builds the whole page unless this process has done so, and returns its folder.
-///
-/// # Errors
-/// Fails as [`build`] does, and if the example for three.js cannot be made.
 pub fn build_once() -> anyhow::Result<PathBuf> {
     static BUILT: Mutex<Option<PathBuf>> = Mutex::new(None);
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -146,10 +133,7 @@ fn compile(what: &[&str], name: &str) -> anyhow::Result<PathBuf> {
     let linker = rust.wasm_linker().context("there is no linker for WebAssembly: apt-get install lld")?;
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
     command.env("CARGO_ENCODED_RUSTFLAGS", anonymous_paths().unwrap_or_default());
-    announce(&arguments);
-    if !command.status().context("cargo cannot be started")?.success() {
-        bail!("the module does not compile: see above");
-    }
+    cargo::perform(&mut command, "the module does not compile")?;
     Ok(target.join(TRIPLE).join("web").join(name).with_extension("wasm"))
 }
 

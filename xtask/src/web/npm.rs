@@ -10,18 +10,12 @@ use crate::console::run;
 use crate::folders::{copy, make, make_once, read_text, root, target_folder};
 
 /// Returns the script of the Immersive Web Emulation Runtime, which emulates a headset in the page's tests.
-///
-/// # Errors
-/// Fails if npm is missing, or cannot fetch the package.
 pub fn emulator() -> anyhow::Result<PathBuf> {
     fetch("iwer", "iwer@2.5.0", "build/iwer.min.js")
 }
 
 /// Returns the folder of the npm packages that the package for three.js is tested with: three.js in its oldest and its
 /// newest version, frameworks, a bundler. `tests/three/package.json` lists them.
-///
-/// # Errors
-/// Fails if npm is missing, or cannot fetch them.
 pub fn three() -> anyhow::Result<PathBuf> {
     let (source, folder) = (root().join("tests/three"), target_folder()?.join("three"));
     let lock = "package-lock.json";
@@ -49,9 +43,6 @@ pub fn npm() -> Command {
 
 /// Checks the types of the page's scripts by their JSDoc comments. Returns true if no fault was found. If the type
 /// checker is not available, prints a message and returns true.
-///
-/// # Errors
-/// Fails if Node cannot be started.
 pub fn check_types() -> anyhow::Result<bool> {
     let compiler = match fetch("typescript", "typescript@5.9.3", "lib/tsc.js") {
         Ok(compiler) => compiler,

@@ -10,9 +10,6 @@ use anyhow::Context as _;
 use yoro_files::http::{self, Request};
 
 /// Serves a folder until the program is ended.
-///
-/// # Errors
-/// Fails if the port is taken.
 pub fn serve(folder: &Path, port: u16) -> anyhow::Result<()> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
         .with_context(|| format!("port {port} cannot be served: name another one with --port"))?;

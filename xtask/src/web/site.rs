@@ -44,9 +44,6 @@ pub fn sources() -> PathBuf {
 }
 
 /// Completes a folder whose module is in [`VERSION`]: copies the page's sources, and names the version by a hash of it.
-///
-/// # Errors
-/// Fails if a file cannot be read or written.
 pub fn assemble(folder: &Path) -> anyhow::Result<()> {
     let unnamed = folder.join(VERSION);
     for path in files(&sources())? {
@@ -77,9 +74,6 @@ pub fn assemble(folder: &Path) -> anyhow::Result<()> {
 }
 
 /// Copies the built page into a folder that may hold earlier versions.
-///
-/// # Errors
-/// Fails if a file cannot be written.
 pub fn publish(built: &Path, out: &Path) -> anyhow::Result<()> {
     let mut all = folders::files(built)?;
     // The document comes last.

@@ -8,9 +8,6 @@ use crate::console::run;
 use crate::folders::{copy, read_text, root};
 
 /// Writes the example into a folder, and returns the notice of three.js, which is in it.
-///
-/// # Errors
-/// Fails if the npm packages cannot be had, or the example cannot be bundled.
 pub fn example(folder: &Path) -> anyhow::Result<String> {
     let package = root().join("app/engines/three");
     let modules = npm::three()?;

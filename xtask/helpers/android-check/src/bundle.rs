@@ -6,13 +6,14 @@ use std::io::{Cursor, Read as _, Write as _};
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::{Context as _, ensure};
+use anyhow::Context as _;
+use xtask::console::run;
 use xtask::folders::{files, write};
 use xtask::ndk::sdk;
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
-use crate::check::{Report, shortened};
+use crate::check::Report;
 
 /// `BundleConfig`: the version of bundletool that has this layout.
 pub const CONFIG: &str = "BundleConfig.pb";
@@ -29,12 +30,10 @@ const SETTINGS: [(&str, &[u8]); 2] = [
     ),
 ];
 
-type Files = Vec<(String, Vec<u8>)>;
+/// The names and contents of files.
+pub type Files = Vec<(String, Vec<u8>)>;
 
 /// Packs the files of a folder, sorted by name so that the same files result in the same archive.
-///
-/// # Errors
-/// Fails if a file cannot be read or written.
 pub fn pack(folder: &Path, packed: &Path) -> anyhow::Result<()> {
     let read = |(name, path): (String, _)| {
         let content = fs::read(&path).with_context(|| format!("{name} cannot be read"))?;
@@ -52,9 +51,10 @@ fn zip(files: &Files, packed: &Path) -> anyhow::Result<()> {
     write(packed, zip.finish()?.into_inner())
 }
 
-fn unzip(packed: &Path) -> anyhow::Result<Files> {
-    let mut zip =
-        ZipArchive::new(File::open(packed)?).with_context(|| format!("{} is damaged", packed.display()))?;
+/// Returns the files in an archive.
+pub fn unzip(packed: &Path) -> anyhow::Result<Files> {
+    let zip = ZipArchive::new(File::open(packed)?);
+    let mut zip = zip.with_context(|| format!("{} is damaged, or no archive", packed.display()))?;
     let mut files = Files::new();
     for index in 0..zip.len() {
         let mut file = zip.by_index(index)?;
@@ -66,9 +66,6 @@ fn unzip(packed: &Path) -> anyhow::Result<Files> {
 }
 
 /// Makes an unsigned bundle from a finished APK.
-///
-/// # Errors
-/// Fails if aapt2 is missing or rejects the APK, or a file cannot be read or written.
 pub fn make(apk: &Path, bundle: &Path) -> anyhow::Result<()> {
     let converted = bundle.with_extension("proto.apk");
     convert("proto", apk, &converted)?;
@@ -89,26 +86,17 @@ fn place(name: &str) -> Option<String> {
     }
 }
 
-/// Adds rows for the layout. Converts the module to an unsigned APK for the other checks, as bundletool would.
-///
-/// # Errors
-/// Fails if aapt2 is missing, or cannot read the manifest or the resources.
-pub fn check(bundle: &Path, apk: &Path, report: &mut Report) -> anyhow::Result<()> {
-    let files = unzip(bundle)?;
-    let problem = SETTINGS
-        .iter()
-        .find(|(wanted, bytes)| !files.iter().any(|(name, content)| name == wanted && content == bytes));
-    let problem = problem.map(|(name, _)| format!("{name} is not as bundletool wants it"));
+/// Adds a row for the layout. Converts the module to an unsigned APK for the other checks, as bundletool would.
+pub fn check(files: Files, apk: &Path, report: &mut Report) -> anyhow::Result<()> {
+    let is_in = |(wanted, bytes): &(&str, &[u8])| {
+        files.iter().any(|(name, content)| name == wanted && content == bytes)
+    };
+    let is_known = |name: &str| name.starts_with("base/") || name.starts_with("META-INF/") || name == CONFIG;
+    let wrong = SETTINGS.iter().filter(|setting| !is_in(setting)).map(|(name, _)| *name);
+    let strange = files.iter().map(|(name, _)| name.as_str()).filter(|name| !is_known(name));
+    let wrong: Vec<&str> = wrong.chain(strange).collect();
+    let problem = (!wrong.is_empty()).then(|| format!("bundletool wants no such {}", wrong.join(", ")));
     report.row("layout", "one module, a folder for each processor", problem);
-    let is_known =
-        |name: &str| ["base/", "META-INF/"].iter().any(|it| name.starts_with(it)) || name == CONFIG;
-    let strange: Vec<String> =
-        files.iter().map(|(name, _)| name.clone()).filter(|name| !is_known(name)).collect();
-    report.row(
-        "modules",
-        "base",
-        (!strange.is_empty()).then(|| format!("bundletool refuses {}", shortened(&strange))),
-    );
 
     let module = files.into_iter().filter_map(|(name, content)| match name.as_str() {
         MANIFEST => Some(("AndroidManifest.xml".to_owned(), content)),
@@ -123,11 +111,7 @@ pub fn check(bundle: &Path, apk: &Path, report: &mut Report) -> anyhow::Result<(
 
 fn convert(format: &str, from: &Path, to: &Path) -> anyhow::Result<()> {
     let mut aapt2 = Command::new(sdk::build_tool("aapt2")?);
-    let output = aapt2.args(["convert", "--output-format", format, "-o"]).arg(to).arg(from).output();
-    let output = output.context("aapt2 cannot be started")?;
-    let message = String::from_utf8_lossy(&output.stderr);
-    ensure!(output.status.success(), "aapt2 cannot convert {}: {}", from.display(), message.trim());
-    Ok(())
+    run(aapt2.args(["convert", "--output-format", format, "-o"]).arg(to).arg(from)).map(drop)
 }
 
 #[cfg(test)]
@@ -149,12 +133,5 @@ mod tests {
         let first = packed(names);
         assert!(first == packed([names[1], names[0]]));
         assert_eq!(first.1, names.map(|name| (name.to_owned(), name.as_bytes().to_owned())));
-    }
-
-    #[test]
-    fn bundles_have_their_own_places() {
-        assert_eq!(place("AndroidManifest.xml").as_deref(), Some(MANIFEST));
-        assert_eq!(place("lib/x86_64/liba.so").as_deref(), Some("base/lib/x86_64/liba.so"));
-        assert_eq!((place("META-INF/CERT.SF"), place("other.txt")), (None, None));
     }
 }

@@ -1,25 +1,20 @@
 //! Checks whether Android will install and start an APK, and whether a store takes it, by the tools of Android's SDK and
 //! what these do not see.
 
-use std::collections::BTreeMap;
-use std::fmt;
-use std::fs::{self, File};
-use std::io::Read as _;
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
+use xtask::console::run;
 use xtask::ndk::sdk;
 use xtask::ndk::target::{ARCHITECTURES, PAGE};
-use zip::ZipArchive;
 
 use crate::manifest::Manifest;
 use crate::{bundle, library};
 
 /// Maximum size in bytes of a release with its built-in scenes.
 const MAX_SIZE: u64 = 8_000_000;
-/// What the certificates of the keys say that Android's tools make for development.
-const DEBUG_KEY: &str = "CN=Android Debug";
 
 /// Whom an APK or a bundle is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,120 +31,69 @@ pub enum Store {
     Play,
 }
 
-/// The result of a check.
-#[derive(Debug)]
-struct Row {
-    what: String,
-    found: String,
-    problem: Option<String>,
-}
-
 /// The results of all checks.
 #[derive(Debug, Default)]
-pub struct Report(Vec<Row>);
+pub struct Report {
+    /// A line for each.
+    pub text: String,
+    /// True if one has found a problem.
+    pub failed: bool,
+}
 
 impl Report {
-    /// True if no row has a problem.
-    pub fn passed(&self) -> bool {
-        self.0.iter().all(|row| row.problem.is_none())
-    }
-
-    /// Adds a row.
-    pub fn row(&mut self, what: impl Into<String>, found: impl Into<String>, problem: Option<String>) {
-        self.0.push(Row { what: what.into(), found: found.into(), problem });
-    }
-}
-
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = self.0.iter().map(|row| row.what.len()).max().unwrap_or(0);
-        for Row { what, found, problem } in &self.0 {
-            match problem {
-                None => writeln!(f, "  ok    {what:width$}  {found}")?,
-                Some(problem) => writeln!(f, "  FAIL  {what:width$}  {found}: {problem}")?,
-            }
-        }
-        Ok(())
+    /// Adds a row: what was checked, what was found, and what is wrong with it.
+    pub fn row(&mut self, what: &str, found: &str, problem: Option<String>) {
+        self.failed |= problem.is_some();
+        self.text += &match problem {
+            None => format!("  ok    {what:17}  {found}\n"),
+            Some(problem) => format!("  FAIL  {what:17}  {found}: {problem}\n"),
+        };
     }
 }
 
-/// Joins names to a list, which is shortened if there are too many.
-pub fn shortened(names: &[String]) -> String {
-    const SHOWN: usize = 5;
-    match names.len().checked_sub(SHOWN) {
-        Some(more @ 1..) => format!("{} and {more} more", names[..SHOWN].join(", ")),
-        _ => names.join(", "),
-    }
-}
-
-/// Runs all checks on an APK or a bundle. With `any_key`, stores take what was signed for debugging; with `any_size`, it may
-/// be as large as one that is not optimized as a whole.
-///
-/// # Errors
-/// Fails if the file is neither, or a tool for the checks is missing.
-pub fn check(path: &Path, store: Store, any_key: bool, any_size: bool) -> anyhow::Result<Report> {
-    let shown = path.display();
-    let file = File::open(path)
-        .with_context(|| format!("{shown} cannot be read (`cargo xtask apk` says where it puts an APK)"))?;
-    let size = file.metadata().with_context(|| format!("{shown} cannot be read"))?.len();
-    let zip = ZipArchive::new(file);
-    let zip =
-        zip.with_context(|| format!("{shown} is damaged or no APK: build it anew by `cargo xtask apk`"))?;
+/// Runs all checks on an APK or a bundle, apart from the rules `any-key` (it may be signed for debugging) and `any-size` (it
+/// may be as large as one that is not optimized as a whole).
+pub fn check(path: &Path, store: Store, apart_from: &[&str]) -> anyhow::Result<Report> {
+    let size = fs::metadata(path).with_context(|| format!("{} cannot be read", path.display()))?.len();
+    let files = bundle::unzip(path)?;
+    let has = |name: &str| files.iter().any(|(file, _)| file == name);
     let mut report = Report::default();
-    let any_key = any_key || store == Store::None;
-    let refuse_form = |report: &mut Report, found: &str, right: &str| {
-        report.row("form", found, Some(format!("should be {right}")));
-    };
-    if zip.index_for_name(bundle::CONFIG).is_some() {
-        if store == Store::Quest {
-            refuse_form(&mut report, "bundle", "an APK: cargo xtask apk --release --quest");
-        }
+    let any_key = store == Store::None || apart_from.contains(&"any-key");
+    if has(bundle::CONFIG) {
+        let right = (store == Store::Quest).then(|| "an APK: cargo xtask apk --release --quest");
+        report.row("form", "bundle", right.map(|right| format!("should be {right}")));
         // The APK is checked without its alignment, which is up to the store.
         let apk = path.with_extension("checked.apk");
-        bundle::check(path, &apk, &mut report)?;
-        jar_signature(path, any_key, &mut report)?;
+        bundle::check(files, &apk, &mut report)?;
+        let keytool = ["-J-Duser.language=en", "-printcert", "-jarfile"];
+        let certificate = run(Command::new("keytool").args(keytool).arg(path))?;
+        let signer = certificate.lines().find_map(|line| line.strip_prefix("Owner: "));
+        let problem = signer.map_or(Some("no store takes it".into()), |signer| refusal(signer, any_key));
+        report.row("signature", signer.unwrap_or("none"), problem);
         Manifest::read(&apk)?.check(store, &mut report);
-        libraries(&apk, store, &mut report)?;
+        libraries(&bundle::unzip(&apk)?, store, &mut report);
         fs::remove_file(&apk).with_context(|| format!("{} cannot be removed", apk.display()))?;
         return Ok(report);
     }
-    if zip.index_for_name("AndroidManifest.xml").is_none() {
-        bail!("{shown} is an archive without AndroidManifest.xml, and so no APK: name the .apk file");
-    }
-    if store == Store::Play {
-        refuse_form(&mut report, "APK", "a bundle: cargo xtask apk --release --bundle");
-    }
+    let right = (store == Store::Play).then(|| "a bundle: cargo xtask apk --release --bundle");
+    report.row("form", "APK", right.map(|right| format!("should be {right}")));
     let manifest = Manifest::read(path)?;
-    let too_large = (size > MAX_SIZE && !manifest.is_debuggable() && !any_size)
-        .then(|| format!("a release must be under {} MB", MAX_SIZE / 1_000_000));
-    report.row("size", format!("{:.2} MB", size as f64 / 1e6), too_large);
+    let is_small = size <= MAX_SIZE || manifest.has(":debuggable(") || apart_from.contains(&"any-size");
+    let problem = (!is_small).then(|| format!("a release must be under {} MB", MAX_SIZE / 1_000_000));
+    report.row("size", &format!("{:.2} MB", size as f64 / 1e6), problem);
     manifest.check(store, &mut report);
-    let problem = zip.index_for_name(&manifest.icon).is_none().then(|| "no such file".to_owned());
-    report.row("icon", &manifest.icon, problem);
-    signature(path, any_key, &mut report)?;
-    let zipalign = tool("zipalign", &["-c", "-v", "4"], path)?;
-    let problem = misaligned(&zipalign.text, manifest.unpacks_libraries());
+    report.row("icon", &manifest.icon, (!has(&manifest.icon)).then(|| "no such file".into()));
+    // The oldest Android that supports v2 signatures. For later versions, apksigner accepts v3 alone.
+    let verify = ["verify", "--verbose", "--print-certs", "--min-sdk-version", "24"];
+    let (signer, problem) =
+        verdict(run(Command::new(sdk::build_tool("apksigner")?).args(verify).arg(path)), any_key);
+    report.row("signature", &signer, problem);
+    let zipalign = Command::new(sdk::build_tool("zipalign")?).args(["-c", "-v", "4"]).arg(path).output();
+    let zipalign = zipalign.context("zipalign cannot be started")?.stdout;
+    let problem = misaligned(&String::from_utf8_lossy(&zipalign), manifest.has(":extractNativeLibs("));
     report.row("alignment", "4 bytes; libraries that are mapped, 16 KiB", problem);
-    libraries(path, store, &mut report)?;
+    libraries(&files, store, &mut report);
     Ok(report)
-}
-
-/// What a tool has printed.
-struct Output {
-    succeeded: bool,
-    text: String,
-    errors: String,
-}
-
-fn tool(name: &str, arguments: &[&str], file: &Path) -> anyhow::Result<Output> {
-    let output = Command::new(sdk::build_tool(name)?).args(arguments).arg(file).output();
-    let output = output.with_context(|| format!("{name} cannot be started"))?;
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    Ok(Output {
-        succeeded: output.status.success(),
-        text: text(&output.stdout),
-        errors: text(&output.stderr),
-    })
 }
 
 /// Finds what Android could not map in zipalign's lines `OFFSET NAME (OK)`, which know nothing of pages of 16 KiB, nor that
@@ -166,88 +110,48 @@ fn misaligned(text: &str, unpacked: bool) -> Option<String> {
         is_wrong.then(|| format!("{name} at {offset} ({verdict}"))
     });
     let wrong: Vec<String> = wrong.collect();
-    (!wrong.is_empty()).then(|| shortened(&wrong))
+    (!wrong.is_empty()).then(|| wrong.join(", "))
 }
 
 /// Checks that there are libraries for the store's processors, and each of them.
-fn libraries(apk: &Path, store: Store, report: &mut Report) -> anyhow::Result<()> {
-    let mut zip = ZipArchive::new(File::open(apk)?)?;
-    let mut libraries = BTreeMap::new();
-    for index in 0..zip.len() {
-        let mut file = zip.by_index(index)?;
-        if let Some(name) = file.name()?.strip_prefix("lib/").map(str::to_owned) {
-            let mut content = Vec::new();
-            file.read_to_end(&mut content).with_context(|| format!("{name} in it is damaged"))?;
-            libraries.insert(name, content);
+fn libraries(files: &bundle::Files, store: Store, report: &mut Report) {
+    let architectures = if store == Store::Quest { &ARCHITECTURES[..1] } else { &ARCHITECTURES };
+    for architecture in architectures {
+        let name = format!("lib/{}/libyoro_android.so", architecture.abi);
+        if !files.iter().any(|(file, _)| *file == name) {
+            report.row("library", "none", Some(format!("{name} is not in it")));
         }
     }
-    let count = if store == Store::Quest { 1 } else { ARCHITECTURES.len() };
-    for architecture in &ARCHITECTURES[..count] {
-        let name = format!("{}/libyoro_android.so", architecture.abi);
-        if !libraries.contains_key(&name) {
-            report.row(
-                format!("{} library", architecture.abi),
-                "none",
-                Some(format!("lib/{name} is not in it")),
-            );
+    for (name, content) in files {
+        if let Some(name) = name.strip_prefix("lib/") {
+            library::check(name, content, architectures, report);
         }
     }
-    for (name, content) in libraries {
-        library::check(&name, &content, &ARCHITECTURES[..count], report);
-    }
-    Ok(())
 }
 
-fn signature(apk: &Path, any_key: bool, report: &mut Report) -> anyhow::Result<()> {
-    // The oldest Android that supports v2 signatures. For later versions, apksigner accepts v3 alone.
-    let arguments = ["verify", "--verbose", "--print-certs", "--min-sdk-version", "24"];
-    let (found, problem) = verdict(&tool("apksigner", &arguments, apk)?, any_key);
-    report.row("signature", found, problem);
-    Ok(())
-}
-
-fn verdict(output: &Output, any_key: bool) -> (String, Option<String>) {
-    let scheme = |name: &&&str| {
-        let line =
-            output.text.lines().find(|line| line.starts_with(&format!("Verified using {name} scheme")));
-        line.is_some_and(|line| line.trim_end().ends_with("true"))
+/// Returns who has signed an APK, and what is wrong with that, by what apksigner says.
+fn verdict(verified: anyhow::Result<String>, any_key: bool) -> (String, Option<String>) {
+    let text = match verified {
+        Ok(text) => text,
+        Err(error) => return ("none".into(), Some(error.to_string())),
     };
-    let schemes: Vec<&str> = ["v2", "v3"].iter().filter(scheme).copied().collect();
-    let signer =
-        output.text.lines().find_map(|line| line.split_once("certificate DN: ")).map(|(_, name)| name);
-    let problem = if !output.succeeded {
-        let error = output.errors.lines().find_map(|line| line.strip_prefix("ERROR: "));
-        Some(error.unwrap_or("apksigner does not verify it").to_owned())
-    } else if schemes.len() < 2 {
-        Some("should be v2 and v3".to_owned())
+    let signer = text.lines().find_map(|line| line.split_once("certificate DN: ")).unwrap_or_default().1;
+    let is_by = |scheme: &str| {
+        let mut lines =
+            text.lines().filter(|line| line.starts_with(&format!("Verified using {scheme} scheme")));
+        lines.any(|line| line.trim_end().ends_with("true"))
+    };
+    let problem = if is_by("v2") && is_by("v3") {
+        refusal(signer, any_key)
     } else {
-        refusal(signer.unwrap_or_default(), any_key)
+        Some("should be v2 and v3".into())
     };
-    (signer.map_or("none".to_owned(), |signer| format!("{} by {signer}", schemes.join(" and "))), problem)
+    (signer.to_owned(), problem)
 }
 
-/// Adds a row for the signature of a bundle, which is that of a JAR.
-fn jar_signature(bundle: &Path, any_key: bool, report: &mut Report) -> anyhow::Result<()> {
-    let arguments = ["-J-Duser.language=en", "-printcert", "-jarfile"];
-    let Output { succeeded, text, .. } = tool("keytool", &arguments, bundle)?;
-    if !succeeded {
-        // It writes its errors to standard output.
-        bail!(
-            "the signature of {} cannot be read: {}",
-            bundle.display(),
-            text.lines().next().unwrap_or_default()
-        );
-    }
-    match text.lines().find_map(|line| line.strip_prefix("Owner: ")) {
-        Some(signer) => report.row("signature", format!("of the jar, by {signer}"), refusal(signer, any_key)),
-        None => report.row("signature", "none", Some("no store takes it".to_owned())),
-    }
-    Ok(())
-}
-
-/// Returns why a store refuses the key.
+/// Returns why a store refuses the key: Android's tools name those for development so.
 fn refusal(signer: &str, any_key: bool) -> Option<String> {
-    (!any_key && signer.contains(DEBUG_KEY)).then(|| {
+    (!any_key && signer.contains("CN=Android Debug")).then(|| {
         "a key for debugging, which no store takes: name yours by CARGO_APK_RELEASE_KEYSTORE, and build it anew"
             .to_owned()
     })
@@ -256,20 +160,6 @@ fn refusal(signer: &str, any_key: bool) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_no_apk_is_refused_with_a_remedy() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("some.apk");
-        let refusal = || check(&path, Store::None, false, false).unwrap_err().to_string();
-        assert!(refusal().contains("some.apk cannot be read"));
-        fs::write(&path, "no archive").unwrap();
-        assert!(refusal().contains("some.apk is damaged or no APK"));
-        let content = folder.path().join("content");
-        xtask::folders::write(&content.join("a.txt"), "a").unwrap();
-        bundle::pack(&content, &path).unwrap();
-        assert!(refusal().contains("without AndroidManifest.xml"));
-    }
 
     #[test]
     fn pages_and_resources_are_beyond_zipalign() {
@@ -289,14 +179,10 @@ mod tests {
     fn both_schemes_are_wanted_and_a_stores_own_key() {
         const GOOD: &str = "Verified using v2 scheme (APK Signature Scheme v2): true\n\
             Verified using v3 scheme (APK Signature Scheme v3): true\nSigner #1 certificate DN: CN=Android Debug, C=US\n";
-        let of = |succeeded, text: &str, errors: &str, any_key| {
-            verdict(&Output { succeeded, text: text.into(), errors: errors.into() }, any_key)
-        };
-        assert_eq!(of(true, GOOD, "", true), ("v2 and v3 by CN=Android Debug, C=US".to_owned(), None));
-        assert!(of(true, GOOD, "", false).1.unwrap().contains("no store takes"));
-        assert_eq!(of(true, &GOOD.replace("Android Debug", "Ada"), "", false).1, None);
-        assert!(of(true, &GOOD.replace("v3): true", "v3): false"), "", true).1.is_some());
-        let unsigned = of(false, "", "DOES NOT VERIFY\nERROR: Missing META-INF/MANIFEST.MF\n", true);
-        assert_eq!(unsigned, ("none".to_owned(), Some("Missing META-INF/MANIFEST.MF".to_owned())));
+        let of = |text: &str, any_key| verdict(Ok(text.to_owned()), any_key);
+        assert_eq!(of(GOOD, true), ("CN=Android Debug, C=US".to_owned(), None));
+        assert!(of(GOOD, false).1.unwrap().contains("no store takes"));
+        assert_eq!(of(&GOOD.replace("Android Debug", "Ada"), false).1, None);
+        assert!(of(&GOOD.replace("v3): true", "v3): false"), true).1.is_some());
     }
 }

@@ -28,27 +28,22 @@ pub fn check(name: &str, content: &[u8], architectures: &[Architecture], report:
         (Some(_), Ok(elf)) if file == LOADER => lacks(&elf, LOADER_ENTRY).into_iter().collect(),
         (Some(_), Ok(elf)) => pages(&elf).into_iter().chain(lacks(&elf, ENTRY)).collect(),
     };
-    let size = content.len() as f64 / 1e6;
-    let problem = (!problems.is_empty()).then(|| problems.join("; "));
-    report.row(format!("{folder} library"), format!("{file}, {size:.2} MB"), problem);
+    let found = format!("{file}, {:.2} MB", content.len() as f64 / 1e6);
+    report.row(&format!("{folder} library"), &found, (!problems.is_empty()).then(|| problems.join("; ")));
 }
 
 /// Returns the folder of an OpenXR loader in an APK.
-///
-/// # Errors
-/// Fails if the file is not a loader, or is for an architecture that the APK has no libraries for.
 pub fn loader_abi(file: &Path) -> anyhow::Result<&'static str> {
-    let shown = file.display();
-    let content = fs::read(file).with_context(|| format!("the OpenXR loader {shown} cannot be read"))?;
-    let advice = "take libopenxr_loader.so of Khronos' openxr_loader_for_android, jni/arm64-v8a in its AAR";
-    let elf = Elf::parse(&content).with_context(|| format!("{shown} is no library: {advice}"))?;
+    const ADVICE: &str =
+        "take libopenxr_loader.so of Khronos' openxr_loader_for_android, jni/arm64-v8a in its AAR";
+    let content = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
+    let elf = Elf::parse(&content).with_context(|| format!("{} is no library: {ADVICE}", file.display()))?;
     if let Some(problem) = lacks(&elf, LOADER_ENTRY) {
-        bail!("{shown} is no OpenXR loader: {problem}; {advice}");
+        bail!("{} is no OpenXR loader: {problem}; {ADVICE}", file.display());
     }
     let architecture = ARCHITECTURES.iter().find(|architecture| is_for(&elf, **architecture));
-    let architecture =
-        architecture.with_context(|| format!("{shown} is for none of the APK's processors: {advice}"))?;
-    Ok(architecture.abi)
+    let none = || format!("{} is for none of the APK's processors: {ADVICE}", file.display());
+    Ok(architecture.with_context(none)?.abi)
 }
 
 fn is_for(elf: &Elf<'_>, architecture: Architecture) -> bool {
@@ -105,7 +100,7 @@ mod tests {
     fn report(name: &str, content: &[u8]) -> String {
         let mut report = Report::default();
         check(name, content, &ARCHITECTURES, &mut report);
-        report.to_string()
+        report.text
     }
 
     #[test]

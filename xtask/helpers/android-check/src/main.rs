@@ -18,34 +18,25 @@ use check::Store;
 use xtask::console;
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    console::exit_code(perform(&arguments).map(|(text, passed)| {
-        console::print(&text);
-        passed
-    }))
+    console::main(perform)
 }
 
 /// Returns the text to print, and false if a check has failed.
 fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
-    let store = |name: &str| match name {
-        "-" => Ok(Store::None),
-        "quest" => Ok(Store::Quest),
-        "play" => Ok(Store::Play),
-        _ => bail!("no store is called {name}: quest or play"),
-    };
     match arguments {
         ["check", apk, name, apart_from @ ..] => {
-            let [any_key, any_size] = ["any-key", "any-size"].map(|word| apart_from.contains(&word));
-            let report = check::check(Path::new(apk), store(name)?, any_key, any_size)?;
-            return Ok((report.to_string(), report.passed()));
+            let store = match *name {
+                "quest" => Store::Quest,
+                "play" => Store::Play,
+                _ => Store::None,
+            };
+            let report = check::check(Path::new(apk), store, apart_from)?;
+            return Ok((report.text, !report.failed));
         }
         ["bundle", apk, bundle] => bundle::make(Path::new(apk), Path::new(bundle))?,
         ["loader", library] => return Ok((library::loader_abi(Path::new(library))?.to_owned(), true)),
         ["pack", packed, folder] => bundle::pack(Path::new(folder), Path::new(packed))?,
-        _ => bail!(
-            "usage: check APK STORE [any-key] [any-size], bundle APK AAB, loader LIBRARY, or pack ARCHIVE FOLDER"
-        ),
+        _ => bail!("usage: see xtask/helpers/android-check/src/main.rs"),
     }
     Ok((String::new(), true))
 }

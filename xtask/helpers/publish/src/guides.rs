@@ -13,6 +13,9 @@ pub const FOLDER: &str = "guides";
 /// The document from which all others are found.
 const FIRST: &str = "README.md";
 
+/// A page, with places for what is in it.
+const PAGE: &str = include_str!("../site/page.html");
+
 /// What each page of the site but the first has on top: a title, and a path in the site.
 const PAGES: [(&str, &str); 6] = [
     ("Try it", "index.html"),
@@ -24,9 +27,6 @@ const PAGES: [(&str, &str); 6] = [
 ];
 
 /// Writes the first document and all that can be reached from it, with pictures and other files that they link to.
-///
-/// # Errors
-/// Fails if a document links to a file that does not exist, or a file cannot be written.
 pub fn write_all(site: &Path) -> anyhow::Result<()> {
     let out = site.join(FOLDER);
     let mut open = vec![PathBuf::from(FIRST)];
@@ -54,7 +54,7 @@ pub fn write_all(site: &Path) -> anyhow::Result<()> {
             Some(address(Path::new(path)) + &anchor)
         });
         let place = Path::new(FOLDER).join(address(&document));
-        write(&site.join(&place), page(&place, &guide.title, &guide.body))?;
+        write_page(site, &place, &guide)?;
         open.extend(linked.into_iter().filter(|file| seen.insert(file.clone())));
     }
     Ok(())
@@ -98,11 +98,10 @@ pub fn guide(text: &str, mut target: impl FnMut(&str) -> Option<String>) -> Guid
     for event in Parser::new_ext(text, options) {
         match event {
             Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
-                let to = target(&dest_url);
+                let to = target(&dest_url).map(Into::into);
                 is_link.push(to.is_some());
-                if let Some(to) = to {
-                    events.push(Event::Start(Tag::Link { link_type, dest_url: to.into(), title, id }));
-                }
+                let link = to.map(|dest_url| Event::Start(Tag::Link { link_type, dest_url, title, id }));
+                events.extend(link);
             }
             Event::End(TagEnd::Link) => {
                 if is_link.pop().unwrap_or(false) {
@@ -113,14 +112,10 @@ pub fn guide(text: &str, mut target: impl FnMut(&str) -> Option<String>) -> Guid
                 let dest_url: CowStr<'_> = target(&dest_url).map_or(dest_url, Into::into);
                 events.push(Event::Start(Tag::Image { link_type, dest_url, title, id }));
             }
-            Event::Start(Tag::Table(columns)) => {
-                events.push(Event::Html("<div class=\"table\">".into()));
-                events.push(Event::Start(Tag::Table(columns)));
+            Event::Start(Tag::Table(_)) => {
+                events.extend([Event::Html("<div class=\"table\">".into()), event])
             }
-            Event::End(TagEnd::Table) => {
-                events.push(event);
-                events.push(Event::Html("</div>\n".into()));
-            }
+            Event::End(TagEnd::Table) => events.extend([event, Event::Html("</div>\n".into())]),
             Event::Start(Tag::Heading { .. }) => {
                 heading = Some((events.len(), String::new()));
                 events.push(event);
@@ -172,19 +167,16 @@ pub fn navigation(place: &Path) -> String {
     links.join("\n    ")
 }
 
-/// Returns a whole page of the site, for this path in it.
-pub fn page(place: &Path, title: &str, body: &str) -> String {
-    let up = up(place);
-    let title = title.replace('&', "&amp;").replace('<', "&lt;");
-    format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n\
-         <link rel=\"icon\" href=\"{up}icon.svg\">\n<link rel=\"stylesheet\" href=\"{up}{FOLDER}/style.css\">\n\
-         </head>\n<body>\n<header>\n  <a class=\"home\" href=\"{up}index.html\">yoro</a>\n  <nav aria-label=\"Site\">\n    \
-         {}\n  </nav>\n</header>\n<main>\n{body}</main>\n</body>\n</html>\n",
-        navigation(place)
-    )
+/// Writes a page of the site, at this path in it.
+pub fn write_page(site: &Path, place: &Path, guide: &Guide) -> anyhow::Result<()> {
+    write(&site.join(place), page(place, guide))
+}
+
+fn page(place: &Path, guide: &Guide) -> String {
+    let title = guide.title.replace('&', "&amp;").replace('<', "&lt;");
+    let values =
+        [("UP", &up(place)), ("TITLE", &title), ("NAVIGATION", &navigation(place)), ("BODY", &guide.body)];
+    values.iter().fold(PAGE.to_owned(), |page, (name, value)| page.replace(&format!("@{name}@"), value))
 }
 
 /// Returns the way from a page up to the site's root.
@@ -200,17 +192,18 @@ mod tests {
     fn links_tables_and_headings_are_converted() {
         let text = "# A & `b`\n\n[in](x.md#y), [gone](out)\n\n|a|\n|-:|\n|b|\n\n## Twice\n## Twice\n";
         let of = |target: &str| (target != "out").then(|| target.replace(".md", ".html"));
-        let Guide { title, body } = guide(text, of);
-        assert_eq!(title, "A & b");
+        let guide = guide(text, of);
+        assert_eq!(guide.title, "A & b");
+        let body = &guide.body;
         assert!(body.contains("<a href=\"x.html#y\">in</a>, gone"), "{body}");
         assert!(body.contains("<h1 id=\"a--b\">") && body.contains("<h2 id=\"twice-1\">"), "{body}");
         assert!(
             body.contains("<div class=\"table\"><table>") && body.contains("<td class=\"right\">b"),
             "{body}"
         );
-        let page = page(Path::new("guides/docs/method.html"), "a<b", "");
+        let page = page(Path::new("guides/docs/method.html"), &guide);
         assert!(page.contains("href=\"../../guides/docs/method.html\" aria-current=\"page\""), "{page}");
-        assert!(page.contains("<title>a&lt;b</title>"), "{page}");
+        assert!(page.contains("<title>A &amp; b</title>"), "{page}");
     }
 
     #[test]

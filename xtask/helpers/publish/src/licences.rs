@@ -29,9 +29,6 @@ const TOOLS: [(&str, &str); 1] = [("cbindgen", "MPL-2.0")];
 const MANIFESTS: [&str; 2] = ["Cargo.toml", "app/engines/bevy/Cargo.toml"];
 
 /// Returns the licences under which a package is used: the preferred ones that its expression demands together.
-///
-/// # Errors
-/// Fails if it has none of [`ACCEPTED`], or none at all.
 pub fn chosen(package: &Package) -> anyhow::Result<Vec<LicenseReq>> {
     let Package { name, version, licence, .. } = package;
     let accepted = ACCEPTED.iter().map(|name| Licensee::parse(name)).collect::<Result<Vec<_>, _>>();
@@ -47,9 +44,6 @@ pub fn chosen(package: &Package) -> anyhow::Result<Vec<LicenseReq>> {
 }
 
 /// Checks all dependencies of all workspaces. Returns the report, and true if all are accepted.
-///
-/// # Errors
-/// Fails if cargo fails.
 pub fn check() -> anyhow::Result<(String, bool)> {
     let (mut report, mut passed, mut count) = (String::new(), true, 0);
     for manifest in MANIFESTS {

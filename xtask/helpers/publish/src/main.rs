@@ -16,12 +16,7 @@ use anyhow::bail;
 use xtask::console;
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    console::exit_code(perform(&arguments).map(|(text, passed)| {
-        console::print(&text);
-        passed
-    }))
+    console::main(perform)
 }
 
 /// Returns the text to print, and false if a check has failed.

@@ -28,9 +28,6 @@ const MORE: [(&str, &str, &str); 1] =
     [("yoro-lenses", "The font B612 Mono (SIL Open Font License 1.1)", "app/vr/lenses/fonts/OFL.txt")];
 
 /// Returns the notices of all that a package for a target contains, built with these arguments of cargo's.
-///
-/// # Errors
-/// Fails if a licence is not accepted, or cargo fails.
 pub fn text(package: &str, target: &str, features: &[&str]) -> anyhow::Result<String> {
     let known = packages::all("Cargo.toml")?;
     let contained = packages::contained(package, target, features)?;
@@ -60,27 +57,21 @@ impl Notices {
         let licences: Vec<String> = chosen(package)?.iter().map(ToString::to_string).collect();
         let files = licence_files(folder);
         let title = format!("{name} {version} ({})", licences.join(" and "));
-        if licences.len() == 1 && licences[0].starts_with(APACHE) {
+        let is_apache = |licence: &String| licence.starts_with(APACHE);
+        if licences.iter().any(is_apache) {
             self.apache.push(format!("{name} {version}"));
+        }
+        if licences.iter().all(is_apache) {
             // Section 4d: the texts of NOTICE files have to be passed on.
             for file in files.iter().filter(|file| is_called(file, "NOTICE")) {
                 self.texts.entry(text_of(file)?).or_default().push(format!("{title}, its NOTICE"));
             }
-            return Ok(());
         }
-        for licence in &licences {
-            if licence.starts_with(APACHE) {
-                self.apache.push(format!("{name} {version}"));
-                continue;
-            }
-            let mark = MARKS.iter().find(|(known, _)| known == licence).map_or("", |(_, mark)| mark);
-            let mut own = Vec::new();
-            for file in files.iter().filter(|_| !mark.is_empty()) {
-                let text = text_of(file)?;
-                if one_line(&text).contains(mark) {
-                    own.push(text);
-                }
-            }
+        let texts = files.iter().map(|file| text_of(file)).collect::<anyhow::Result<Vec<_>>>()?;
+        for licence in licences.iter().filter(|licence| !is_apache(licence)) {
+            let mark = MARKS.iter().find(|(known, _)| known == licence).map(|(_, mark)| mark);
+            let is_own = |text: &&String| mark.is_some_and(|mark| one_line(text).contains(mark));
+            let mut own: Vec<String> = texts.iter().filter(is_own).cloned().collect();
             if own.is_empty() {
                 own.push(standard(package, licence)?);
             }
@@ -96,11 +87,7 @@ impl Notices {
 
     fn write(mut self) -> anyhow::Result<String> {
         let line = "=".repeat(78);
-        let mut out = String::from(
-            "Notices\n\n\
-             yoro is MIT or Apache 2.0, at your option. It contains code of others under the licences below. Rust's\n\
-             standard library (MIT or Apache 2.0, https://www.rust-lang.org) is in every compiled file.\n",
-        );
+        let mut out = include_str!("../site/NOTICES.txt").to_owned();
         // Writing to a string cannot fail.
         let _ = write!(out, "\n{line}\nUnder the Apache License 2.0:\n\n");
         self.apache.sort();

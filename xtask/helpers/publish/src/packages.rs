@@ -20,9 +20,6 @@ pub struct Package {
 }
 
 /// Returns all packages that a workspace may depend on, on any platform, by name and version.
-///
-/// # Errors
-/// Fails if cargo fails.
 pub fn all(manifest: &str) -> anyhow::Result<BTreeMap<(String, String), Package>> {
     parse(&cargo::output(&["metadata", "--format-version", "1", "--locked", "--manifest-path", manifest])?)
 }
@@ -46,9 +43,6 @@ fn parse(text: &str) -> anyhow::Result<BTreeMap<(String, String), Package>> {
 }
 
 /// Returns names and versions of what a package for a target contains, itself included.
-///
-/// # Errors
-/// Fails if cargo fails.
 pub fn contained(package: &str, target: &str, features: &[&str]) -> anyhow::Result<Vec<(String, String)>> {
     // Macros and build scripts run on the builder's machine, and nothing of them is in the result.
     let mut arguments = vec!["tree", "--locked", "--package", package, "--target", target];

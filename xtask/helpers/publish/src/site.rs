@@ -19,22 +19,16 @@ const NO_FILES: &str = "# Downloads\n\nThis copy of the site was made without th
                         makes them: [what to build for whom](guides/index.html#downloads).\n";
 
 /// Completes a folder that has the page and rustdoc. `release` is a folder with the files of a release.
-///
-/// # Errors
-/// Fails if a file is missing or cannot be written.
 pub fn complete(site: &Path, release: Option<&Path>) -> anyhow::Result<()> {
     guides::write_all(site)?;
     write(&site.join(guides::FOLDER).join("style.css"), style()?)?;
-    let place = Path::new("api/index.html");
-    let guide = guides::guide(&crates(site)?, |target| Some(target.to_owned()));
-    write(&site.join(place), guides::page(place, &guide.title, &guide.body))?;
-    let place = Path::new("downloads.html");
+    let guide = |text: &str| guides::guide(text, |target| Some(target.to_owned()));
+    guides::write_page(site, Path::new("api/index.html"), &guide(&crates(site)?))?;
     let text = match release {
         Some(release) => downloads(site, release)?,
         None => NO_FILES.to_owned(),
     };
-    let guide = guides::guide(&text, |target| Some(target.to_owned()));
-    write(&site.join(place), guides::page(place, &guide.title, &guide.body))?;
+    guides::write_page(site, Path::new("downloads.html"), &guide(&text))?;
     let page = site.join("index.html");
     let text = read_text(&page)?;
     let (before, after) = text.split_once(PLACE).with_context(|| format!("the page has no {PLACE}"))?;

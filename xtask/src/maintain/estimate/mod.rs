@@ -150,7 +150,8 @@ pub fn programs() -> anyhow::Result<Vec<Value>> {
     cargo::succeeds(&["xtask", "setup"], &[]);
     let text = cargo::output(&["run", "--quiet", "--package", "yoro-tests", "--bin", "shader-programs"])?;
     let programs = serde_json::from_str(&text);
-    let mut programs = programs.context("shader-programs has written something else than a list of programs")?;
+    let mut programs =
+        programs.context("shader-programs has written something else than a list of programs")?;
     patches::add_parts(&mut programs)?;
     Ok(programs)
 }

@@ -90,7 +90,8 @@ pub fn add_parts(programs: &mut Vec<Value>) -> anyhow::Result<()> {
     for (macros, kept) in VARIANTS {
         let name = [MARCH, macros].join(" ").trim_end().to_owned();
         let words = |name: &str| name.split(' ').map(str::to_owned).collect::<BTreeSet<_>>();
-        let is_whole = |program: &&Value| program["name"].as_str().is_some_and(|own| words(own) == words(&name));
+        let is_whole =
+            |program: &&Value| program["name"].as_str().is_some_and(|own| words(own) == words(&name));
         let whole = programs.iter().find(is_whole).cloned();
         let whole = whole.with_context(|| format!("no program is called {name}"))?;
         for bits in kept {
@@ -134,8 +135,10 @@ fn copy(from: &Path, to: &Path, inner: &Path) -> anyhow::Result<()> {
         let path = from.join(&inner);
         if path.is_dir() {
             copy(from, to, &inner)?;
-        } else if path.extension().is_some_and(|ending| ["glsl", "vert", "frag"].iter().any(|e| ending == *e)) {
-            let text = fs::read_to_string(&path).with_context(|| format!("{} cannot be read", path.display()))?;
+        } else if path.extension().is_some_and(|ending| ["glsl", "vert", "frag"].iter().any(|e| ending == *e))
+        {
+            let text =
+                fs::read_to_string(&path).with_context(|| format!("{} cannot be read", path.display()))?;
             write(&to.join(&inner), counting(&inner.to_string_lossy(), text)?)?;
         }
     }

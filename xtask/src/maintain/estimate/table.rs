@@ -215,7 +215,8 @@ impl Table {
 
     /// Returns the table as the text that [`Table::parse`] reads.
     pub fn to_text(&self) -> String {
-        let mut text = format!("# Mesa {}; cargo xtask maintain estimate --shaders --bless\n{COLUMNS}\n", self.mesa);
+        let mut text =
+            format!("# Mesa {}; cargo xtask maintain estimate --shaders --bless\n{COLUMNS}\n", self.mesa);
         let optional = |number: Option<u32>| number.map_or_else(String::new, |number| number.to_string());
         for row in &self.rows {
             // Writing to a string cannot fail.
