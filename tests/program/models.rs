@@ -113,41 +113,6 @@ fn alpha_is_drawn_as_the_file_says() {
 }
 
 #[test]
-fn instances_are_drawn() {
-    let dir = tempfile::tempdir().unwrap();
-    let red = json!([unlit([1., 0., 0., 1.], "OPAQUE")]);
-    let mut root = write(dir.path(), "many", &red, &[(0, [0., 0., -2.], 0.2)]);
-    let places = [[-4f32, 0., 0.], [0., 0., 0.], [4., 0., 0.]];
-    let bytes: Vec<u8> = places.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
-    fs::write(dir.path().join("places.bin"), bytes).unwrap();
-    let mut add = |list: &str, value: Value| root[list].as_array_mut().unwrap().push(value);
-    add("buffers", json!({"byteLength": 36, "uri": "places.bin"}));
-    add("bufferViews", json!({"buffer": 1, "byteLength": 36}));
-    add("accessors", json!({"bufferView": 3, "componentType": 5126, "count": 3, "type": "VEC3"}));
-    root["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing", "KHR_materials_unlit", "VENDOR_unknown"]);
-    root["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 3}}});
-    fs::write(dir.path().join("many.gltf"), root.to_string()).unwrap();
-    let image = draw(dir.path(), "many");
-    for x in [14, 47, 80] {
-        assert_eq!(image.get_pixel(x, 48).0, [255, 0, 0], "column {x}");
-    }
-    let output = succeed(dir.path(), "render many.gltf --size 64 --outputs left").stderr;
-    assert!(output.contains("is left out: VENDOR_unknown") && !output.contains("instancing"), "{output}");
-    assert!(
-        output.contains("many: 8 viewpoints are made up; write others into many.camera.json"),
-        "{output}"
-    );
-    // One line about what is left out comes before.
-    let output = run(dir.path(), "render many.gltf --animation walk");
-    assert!(
-        output.code == Some(2) && output.stderr.contains("no animation walk: it has none"),
-        "{}",
-        output.stderr
-    );
-    run(dir.path(), "render prototype --animation walk").refuses(&["prototype is a built-in scene"]);
-}
-
-#[test]
 fn a_view_of_nothing_has_its_reason() {
     let dir = tempfile::tempdir().unwrap();
     let camera = |name: &str, distance: u32| {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use image::{GrayImage, ImageBuffer, Luma, Rgb, RgbImage};
+use image::{GrayImage, Luma, Rgb, RgbImage};
 use yoro::eyes::{DepthConvention, DepthRange};
 use yoro_media::DepthImage;
 
@@ -63,23 +63,14 @@ fn map(image: &DepthImage, value: impl Fn(f32) -> f32) -> DepthImage {
     DepthImage::from_fn(WIDTH, HEIGHT, |x, y| Luma([value(image.get_pixel(x, y).0[0])]))
 }
 
-/// Returns window depth in this convention, raised to the power of 1 / gamma.
-pub fn buffer(eye: f32, convention: DepthConvention, gamma: f32) -> DepthImage {
-    let range = DepthRange { convention, ..RANGE };
-    map(&metres(eye), |z| range.depth(z).powf(1.0 / gamma))
+/// Returns window depth in [`RANGE`], which is reversed, raised to the power of 1 / gamma.
+pub fn reversed(eye: f32, gamma: f32) -> DepthImage {
+    map(&metres(eye), |z| RANGE.depth(z).powf(1.0 / gamma))
 }
 
 /// Writes disparity as an 8-bit grey PNG.
 pub fn save_disparity_8(path: &Path, eye: f32) {
     yoro_media::save_gray(path, &levels(eye)).unwrap();
-}
-
-/// Writes disparity as a PNG with three equal 16-bit channels.
-pub fn save_disparity_rgb_16(path: &Path, eye: f32) {
-    let levels = levels(eye);
-    let image: ImageBuffer<Rgb<u16>, Vec<u16>> =
-        ImageBuffer::from_fn(WIDTH, HEIGHT, |x, y| Rgb([u16::from(levels.get_pixel(x, y).0[0]) * 257; 3]));
-    image.save(path).unwrap();
 }
 
 /// Writes the distance as a 16-bit PNG in which white is 20 m.

@@ -4,8 +4,6 @@ use std::fs;
 use std::path::Path;
 
 use image::RgbImage;
-use yoro::eyes::DepthConvention;
-use yoro_media::DepthImage;
 use yoro_metrics::{Channels, Psnr, psnr};
 
 use crate::pair::{self, FOV_Y_DEGREES, IPD, RANGE};
@@ -25,27 +23,21 @@ fn load(path: &Path) -> RgbImage {
     yoro_media::load_color(path).unwrap()
 }
 
-/// Writes the right eye's colour, and its depth in each encoding. Returns the options that decode each.
+/// Writes the right eye's colour, and its depth by each group of options. Returns the options that decode each.
 fn write_encodings(dir: &Path) -> Vec<(&'static str, String)> {
     yoro_media::save_color(&dir.join("color.png"), &pair::color(0.5)).unwrap();
     let save = |name: &str, image| yoro_media::save_depth(&dir.join(name), &image).unwrap();
     save("metres.exr", pair::metres(0.5));
-    save("standard.exr", pair::buffer(0.5, DepthConvention::Standard, 1.0));
-    save("reversed.exr", pair::buffer(0.5, DepthConvention::Reversed, 1.0));
-    save("gamma.png", pair::buffer(0.5, DepthConvention::Reversed, 2.5));
+    save("gamma.png", pair::reversed(0.5, 2.5));
     pair::save_metres_16(&dir.join("metres.png"), 0.5);
     pair::save_disparity_8(&dir.join("disparity.png"), 0.5);
-    pair::save_disparity_rgb_16(&dir.join("rgb.png"), 0.5);
     let range = format!("--near {} --far {}", RANGE.near, RANGE.far);
     let disparity = format!("--depth-encoding disparity --disparity-scale {}", pair::DISPARITY_AT_WHITE);
     vec![
         ("metres.exr", "--depth-encoding metres".into()),
-        ("standard.exr", format!("--depth-encoding standard-z {range}")),
-        ("reversed.exr", format!("--depth-encoding reversed-z {range}")),
         ("gamma.png", format!("--depth-encoding reversed-z --depth-gamma 2.5 {range}")),
         ("metres.png", "--depth-encoding metres --metres-at-white 20".into()),
-        ("disparity.png", disparity.clone()),
-        ("rgb.png", disparity),
+        ("disparity.png", disparity),
     ]
 }
 
@@ -95,49 +87,6 @@ fn every_pipeline_and_either_eye() {
             assert!(db > unshifted + 6.0, "{dominant}, {pipeline}: {db:.2} dB, unshifted {unshifted:.2} dB");
         }
     }
-}
-
-/// Downscaled pictures are anti-aliased. With the depth of each pixel's nearest surface, the other eye is closer to its
-/// true image than with that of any one.
-#[test]
-fn anti_aliased_pictures_take_their_nearest_depth() {
-    const N: u32 = 4;
-    let resolved = |eye: f32| {
-        let large = pair::color(eye);
-        RgbImage::from_fn(large.width() / N, large.height() / N, |x, y| {
-            let sum = |c: usize| -> u32 {
-                (0..N * N).map(|i| u32::from(large.get_pixel(x * N + i % N, y * N + i / N)[c])).sum()
-            };
-            image::Rgb([0, 1, 2].map(|c| (sum(c) as f32 / (N * N) as f32).round() as u8))
-        })
-    };
-    let depth = |chosen: fn(&[f32]) -> f32| {
-        let large = pair::metres(0.5);
-        DepthImage::from_fn(large.width() / N, large.height() / N, |x, y| {
-            let all: Vec<f32> =
-                (0..N * N).map(|i| large.get_pixel(x * N + i % N, y * N + i / N).0[0]).collect();
-            image::Luma([chosen(&all)])
-        })
-    };
-    let dir = tempfile::tempdir().unwrap();
-    yoro_media::save_color(&dir.path().join("color.png"), &resolved(0.5)).unwrap();
-    let nearest = depth(|all| all.iter().copied().fold(f32::MAX, f32::min));
-    yoro_media::save_depth(&dir.path().join("nearest.exr"), &nearest).unwrap();
-    yoro_media::save_depth(&dir.path().join("sample.exr"), &depth(|all| all[5])).unwrap();
-    let truth = resolved(-0.5);
-    let db = |depth: &str| {
-        let line = format!(
-            "synthesize --color color.png --depth {depth}.exr --depth-encoding metres --out out.png {}",
-            eyes()
-        );
-        succeed(dir.path(), &line);
-        let Psnr(db) = psnr(&load(&dir.path().join("out.png")), &truth, Channels::Rgb).unwrap();
-        db
-    };
-    let Psnr(unshifted) = psnr(&resolved(0.5), &truth, Channels::Rgb).unwrap();
-    let [nearest, sample] = ["nearest", "sample"].map(db);
-    assert!(nearest > sample, "{nearest:.2} dB, with any depth {sample:.2} dB, unshifted {unshifted:.2} dB");
-    assert!(nearest > unshifted + 6.0, "{nearest:.2} dB, unshifted {unshifted:.2} dB");
 }
 
 #[test]
@@ -190,7 +139,7 @@ fn depth_without_meaning_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     yoro_media::save_color(&at.join("color.png"), &pair::color(0.5)).unwrap();
-    let mut depth = pair::buffer(0.5, DepthConvention::Reversed, 1.0);
+    let mut depth = pair::reversed(0.5, 1.0);
     yoro_media::save_depth(&at.join("depth.exr"), &depth).unwrap();
     depth.put_pixel(7, 9, image::Luma([-0.25]));
     yoro_media::save_depth(&at.join("negative.exr"), &depth).unwrap();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::RgbImage;
 
-use crate::program::{Run, finish, run, succeed, yoro};
+use crate::program::{run, succeed};
 
 /// A screen of 110 x 62 mm with few pixels, and cheap rendering.
 const SMALL: &str = "--screen 384x216 --dpi 88 --viewer v1 --set shadow-map=0 --set msaa=1 --set bloom=false";
@@ -83,36 +83,6 @@ fn timewarp_makes_up_for_a_late_turn() {
     let [never, rotation, position] = ["off", "rotation", "position"].map(late);
     assert!(rotation < 0.5 * never, "{rotation} by rotation, {never} without");
     assert!(position < 0.5 * never, "{position} by position, {never} without");
-}
-
-/// Runs `yoro view` on a driver that supports no newer version of OpenGL ES than this.
-fn on_es(version: &str, folder: &Path, line: &str) -> Run {
-    finish(
-        yoro(format!("view --gl egl --png es.png {SMALL} --no-hud {line}").split_whitespace())
-            .env("MESA_GLES_VERSION_OVERRIDE", version)
-            .current_dir(folder),
-    )
-}
-
-#[test]
-fn opengl_es_3_0_shows_the_same_by_gather() {
-    let dir = tempfile::tempdir().unwrap();
-    let es = on_es("3.0", dir.path(), "--set pipeline=paper");
-    assert_eq!(es.code, Some(0), "{}", es.stderr);
-    let warnings: Vec<_> = es.stderr.lines().collect();
-    assert!(
-        matches!(warnings.as_slice(), [line] if line.contains("paper") && line.contains("gather")),
-        "{warnings:?}"
-    );
-    let image = yoro_media::load_color(&dir.path().join("es.png")).unwrap();
-    let expected = view(dir.path(), "--gl egl --no-hud");
-    assert!(difference(&image, &expected) < 0.5);
-}
-
-#[test]
-fn contexts_older_than_es_3_0_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    on_es("2.0", dir.path(), "").refuses(&["OpenGL ES 3"]);
 }
 
 #[test]

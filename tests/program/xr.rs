@@ -12,7 +12,7 @@ use image::{Rgb, RgbImage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use xtask::maintain::monado::{self, Running};
-use yoro::eyes::{Eye, EyePair, Frustum, Pose};
+use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_context::{Backend, Headless};
 use yoro_media::rgb_image;
 use yoro_metrics::{Channels, Quality};
@@ -761,86 +761,6 @@ impl Monado {
 
     fn log(&self) -> String {
         fs::read_to_string(self.folder.path().join("service.log")).unwrap()
-    }
-}
-
-/// Runs the program as an application that renders one view, into an array of two. The layer's result must equal the
-/// program's own synthesis, both for whole images and for parts of larger ones.
-#[test]
-fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
-    let Some(programs) = std::env::var_os("YORO_TEST_HELLO_XR").map(PathBuf::from) else {
-        let without = std::env::var_os("YORO_TEST_WITHOUT_HELLO_XR").is_some();
-        assert!(
-            without,
-            "set YORO_TEST_HELLO_XR to the folder of `cargo xtask maintain hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
-        );
-        return;
-    };
-    for scale in ["render-scale=1", "render-scale=0.7"] {
-        assert_synthesized_through_the_layer(&programs, scale);
-    }
-}
-
-fn assert_synthesized_through_the_layer(programs: &Path, scale: &'static str) {
-    // Several samples would be averaged after the program draws glass over its synthesis, but before the layer's.
-    let simulated = Simulated::new(&Script { pictures: pictures(), ..Script::default() }.asymmetric());
-    let folder = simulated.folder.path();
-    let mut command = yoro(["layer", "run", "--library"]);
-    command
-        // Cargo builds it for these tests, into the same folder.
-        .arg(std::env::current_exe().unwrap().with_file_name("libyoro_openxr_layer.so"))
-        .arg("--")
-        .arg(programs.join("run"))
-        .arg(env!("CARGO_BIN_EXE_yoro"))
-        .args(["xr", "--mono", "--method", "mono", "--frames", "2", "--capture", "captured", "--json"])
-        .arg("--runtime")
-        .arg(programs.join("libopenxr_loader.so.1"))
-        .args(cheap())
-        .args(["--set", ONE_SAMPLE, "--set", scale])
-        .env("XR_RUNTIME_JSON", simulated.path("runtime.json"))
-        .env("XDG_CONFIG_HOME", folder)
-        .env("XDG_STATE_HOME", folder)
-        .env(VARIABLE, "script.json")
-        .current_dir(folder);
-    let run = in_time(&mut command);
-    assert_eq!(run.code, Some(0), "{}", run.stderr);
-    assert!(run.stderr.contains("yoro layer: yoro: renders one view; the left eye is synthesized"));
-    let end = run.stderr.lines().find(|line| line.contains("session ended after")).unwrap();
-    assert!(end.ends_with(" synthesized, 0 not"), "{}", run.stderr);
-
-    // The layer's log says the same.
-    let log = fs::read_to_string(folder.join("yoro/layer.log")).unwrap();
-    assert!(log.contains(end), "{log}");
-
-    // A layer may look up functions of extensions that are not enabled, since it cannot know which are.
-    let violations = simulated
-        .count(|entry| matches!(entry, Entry::Violation { call, .. } if call != "xrGetInstanceProcAddr"));
-    assert_eq!(violations, 0, "{:#?}", simulated.log());
-    let views = simulated.views();
-    let (_, views) = views.last().unwrap();
-    assert!(views.iter().all(|view| view.depth.is_some()), "{views:?}");
-    // The pose of the program's only view in the scene. The distance to the other eye is the same there as in the room.
-    let (_, own, _) = captured(folder, &run.json()).remove(0);
-    let at = |view: &View| Vec3::from(view.position);
-    let apart = Quat::from_array(views[1].orientation).inverse() * (at(&views[0]) - at(&views[1]));
-    let placed = own.poses[0];
-    let [.., width, height] = views[0].image.rect.map(|n| n as u32);
-    let pair = EyePair {
-        poses: [placed.translated_local(apart), placed],
-        frusta: [0, 1].map(|eye: usize| {
-            let [left, right, up, down] = views[eye].fov_degrees.map(f32::to_radians);
-            Frustum::from_fov(left, right, up, down)
-        }),
-        size: [width, height],
-        ..own
-    };
-    let settings =
-        Settings::resolve(None, CHEAP.into_iter().chain([ONE_SAMPLE, scale]).map(str::to_owned)).unwrap();
-    let own = desktop("prototype", Method::Synthesized, &pair, &settings);
-    for eye in Eye::BOTH {
-        let quality = rgb(&simulated.picture(&format!("view-{}.png", eye.index())), &own[eye.index()]);
-        println!("{scale}: {eye:?}: {quality:?}");
-        assert!(quality.ssim_gaussian > 0.99, "{scale}: {eye:?}: {quality:?}");
     }
 }
 

@@ -122,20 +122,3 @@ impl Clock {
         BOOTED + (since / self.period + 1) * self.period
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn refreshes_are_periodic_and_time_never_goes_back() {
-        let clock = Clock::new(72.0, 0.0);
-        let first = clock.next_refresh(clock.now());
-        assert_eq!(first - BOOTED, 13_888_889);
-        assert_eq!(clock.next_refresh(first) - first, clock.period());
-        clock.advance_to(first);
-        clock.advance_to(first - 5);
-        assert_eq!(clock.now(), first);
-        assert_eq!(clock.monotonic_of(clock.realtime()), first);
-    }
-}

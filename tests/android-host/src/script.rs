@@ -197,9 +197,6 @@ pub enum GlesVersion {
     /// 3.0, which has no compute shaders.
     #[serde(rename = "3.0")]
     Es30,
-    /// 3.1.
-    #[serde(rename = "3.1")]
-    Es31,
     /// 3.2, the newest version of Mesa.
     #[serde(rename = "3.2")]
     Es32,
@@ -211,7 +208,6 @@ impl GlesVersion {
         match self {
             Self::Es20 => (2, 0),
             Self::Es30 => (3, 0),
-            Self::Es31 => (3, 1),
             Self::Es32 => (3, 2),
         }
     }
@@ -246,12 +242,8 @@ pub struct Battery {
     /// `BATTERY_PROPERTY_CURRENT_NOW` in microamperes if to specification, negative while discharging. `None` if
     /// unsupported.
     pub current_now: Option<i32>,
-    /// `BATTERY_PROPERTY_CURRENT_AVERAGE` in microamperes. `None` if unsupported.
-    pub current_average: Option<i32>,
     /// `BATTERY_PROPERTY_CHARGE_COUNTER` in microampere-hours. `None` if unsupported.
     pub charge_counter: Option<i32>,
-    /// `BATTERY_PROPERTY_ENERGY_COUNTER` in nanowatt-hours. `None` if unsupported.
-    pub energy_counter: Option<i64>,
 }
 
 impl Default for Battery {
@@ -263,9 +255,7 @@ impl Default for Battery {
             plugged: 0,
             status: 3,
             current_now: Some(-512_000),
-            current_average: None,
             charge_counter: Some(3_317_000),
-            energy_counter: None,
         }
     }
 }
@@ -486,45 +476,5 @@ impl Key {
             Self::Menu => 82,
             Self::ButtonA => 96,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_script_is_read() {
-        let script = Script::parse(
-            r#"
-            name = "x"
-            steps = ["launch", { frames = 3 }, { tap = {} }, { key = "volume-up" }, { head = { yaw = 30, seconds = 0.5 } },
-                { repeat = { times = 2, steps = ["pause", "resume"] } }, { capture = "a.png" }, "quit"]
-            [device]
-            width = 64
-            gles = "3.0"
-            sensors = ["accelerometer"]
-            [device.battery]
-            level = 5
-            [device.properties]
-            "debug.yoro.scene" = "talk"
-            "#,
-        )
-        .unwrap();
-        assert_eq!(script.device.width, 64);
-        assert_eq!(script.device.gles, GlesVersion::Es30);
-        assert_eq!(script.device.battery.unwrap().level, 5);
-        assert!(matches!(script.steps[1], Step::Frames(3)));
-        assert!(matches!(script.steps[2], Step::Tap { x: 0.5, .. }));
-        assert!(matches!(&script.steps[5], Step::Repeat { times: 2, steps } if steps.len() == 2));
-    }
-
-    #[test]
-    fn mistakes_are_named() {
-        let refused = |text: &str| format!("{:#}", Script::parse(text).unwrap_err());
-        assert!(refused("name='x'\nsteps=['fly']").contains("fly"));
-        assert!(refused("name='x'\nsteps=[]\n[device]\nwidht=3").contains("widht"));
-        assert!(refused("name='x'\nsteps=[]\n[device]\nwidth=0").contains("between 1 and 8192"));
-        assert!(refused("name='x'\nsteps=[]\n[device.files]\n'../x'='y'").contains("relative"));
     }
 }

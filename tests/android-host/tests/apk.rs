@@ -17,7 +17,7 @@ use yoro_viewer::{Cardboard, FrameTiming, HeldHead, SceneState};
 
 use yoro_android_host::summary::Summary;
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
-use yoro_openxr_stub::script::{At, Event, Eye, Fault, Pictures, Script as Headset, What};
+use yoro_openxr_stub::script::{Eye, Fault, Pictures, Script as Headset};
 
 use host::{READY, Run, asset, device, layer, play, play_arm64, show};
 
@@ -595,28 +595,6 @@ fn one_view_through_the_layer_is_what_the_application_synthesizes() {
             rendered > 40.0 && synthesized > 35.0 && synthesized > same + 10.0,
             "rendered {rendered:.1} dB, synthesized {synthesized:.1} dB, the same image {same:.1} dB"
         );
-    }
-}
-
-#[test]
-fn the_layer_works_again_after_a_loss() {
-    let Some(aar) = layer("layer-loss") else { return };
-    for what in [What::LoseSession, What::LoseInstance] {
-        let folder = tempfile::tempdir().unwrap();
-        let case = format!("{what:?}");
-        let script = Headset { events: vec![Event { at: At::Frame(6), what }], ..Headset::default() };
-        let device = layered(folder.path(), script, &aar, &[]);
-        let begins = r#"{ wait-log = { text = "renders one view", frames = 2000 } }"#;
-        let steps = format!(
-            r#""launch", {begins}, {{ wait-log = {{ text = "triangles", frames = 2000 }} }}, {begins}, {{ frames = 8 }}, "pause", "resume",
-                {{ frames = 4 }}, {{ mark = "first" }}, {{ frames = 40 }}, {{ mark = "last" }}, "quit""#
-        );
-        let Some(run) = play(&format!("layer-{case}"), &device, &steps) else { return };
-        assert_layered(&run, folder.path());
-        let sessions = said(&run).iter().filter(|line| line.starts_with("renders one view")).count();
-        assert_eq!(sessions, 2, "{case}: {:?}", said(&run));
-        let [first, last] = ["first", "last"].map(|name| &run.summary.mark(name).unwrap().gl_objects);
-        assert_eq!(first, last, "{case}");
     }
 }
 

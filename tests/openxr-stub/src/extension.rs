@@ -141,7 +141,8 @@ pub fn set_android_application_thread(
     DONE
 }
 
-/// Returns triangles that cover the outer upper corner, in the view's plane at distance 1.
+/// Returns the hidden triangle that covers the outer upper corner, in the view's plane at distance 1. Nothing else is
+/// asked for.
 pub fn get_visibility_mask(
     world: &mut World,
     session: sys::Session,
@@ -163,15 +164,9 @@ pub fn get_visibility_mask(
     let (outer, inner) = if view == 0 { (left, right) } else { (right, left) };
     let cut = [outer + 0.25 * (inner - outer), up + 0.25 * (down - up)];
     let corner = [[outer, up], [cut[0], up], [outer, cut[1]]];
-    let outline = [corner[2], corner[1], [inner, up], [inner, down], [outer, down]];
     let (vertices, indices): (Vec<[f32; 2]>, Vec<u32>) = match kind {
-        _ if !is_masked => Default::default(),
-        sys::VisibilityMaskTypeKHR::HIDDEN_TRIANGLE_MESH => (corner.into(), orient(&corner, [0, 1, 2])),
-        sys::VisibilityMaskTypeKHR::VISIBLE_TRIANGLE_MESH => (
-            outline.into(),
-            [[0, 1, 2], [0, 2, 3], [0, 3, 4]].into_iter().flat_map(|t| orient(&outline, t)).collect(),
-        ),
-        _ => (outline.into(), (0..5).collect()),
+        sys::VisibilityMaskTypeKHR::HIDDEN_TRIANGLE_MESH if is_masked => (corner.into(), orient(&corner)),
+        _ => Default::default(),
     };
     // SAFETY: the mask states its own capacity.
     let (to_vertices, to_indices) = unsafe {
@@ -184,9 +179,8 @@ pub fn get_visibility_mask(
     to_indices.fill(&indices, |to, from| *to = *from)
 }
 
-/// Returns the corners of a triangle in counter-clockwise order.
-fn orient(vertices: &[[f32; 2]], [a, b, c]: [u32; 3]) -> Vec<u32> {
-    let [p, q, r] = [a, b, c].map(|i| vertices[i as usize]);
+/// Returns the numbers of a triangle's corners in counter-clockwise order.
+fn orient([p, q, r]: &[[f32; 2]; 3]) -> Vec<u32> {
     let area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);
-    if area >= 0.0 { vec![a, b, c] } else { vec![a, c, b] }
+    if area >= 0.0 { vec![0, 1, 2] } else { vec![0, 2, 1] }
 }

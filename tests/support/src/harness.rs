@@ -64,7 +64,6 @@ pub fn with_gpu(rendering: Rendering, body: impl FnOnce(&Gpu)) {
 
 /// Does the same without the validation layer, which keeps memory for every submission: for tests that memory does not
 /// grow.
-#[allow(dead_code, reason = "for the layer's tests, which share this")]
 pub fn with_unwatched_gpu(rendering: Rendering, body: impl FnOnce(&Gpu)) {
     with(rendering, false, body);
 }
@@ -213,7 +212,6 @@ impl Gpu {
     }
 
     /// True if a render pass can resolve depth in this way.
-    #[allow(dead_code, reason = "for the test of resolved depth, which shares this")]
     pub fn resolves_depth(&self, mode: vk::ResolveModeFlags) -> bool {
         let mut resolve = vk::PhysicalDeviceDepthStencilResolveProperties::default();
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut resolve);
@@ -290,7 +288,6 @@ impl Gpu {
     }
 
     /// Creates an image of four samples that can be rendered to.
-    #[allow(dead_code, reason = "for the test of resolved depth, which shares this")]
     pub fn multisampled(&self, format: vk::Format, size: [u32; 2]) -> Image<'_> {
         self.image_of(format, size, 1, vk::SampleCountFlags::TYPE_4, vk::ImageUsageFlags::empty())
     }

@@ -349,11 +349,6 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bytes_do(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
-            parse(Path::new("t.mtl"), &bytes);
-        }
-
-        #[test]
         fn any_statements_do(words in proptest::collection::vec(
             prop_oneof!["newmtl|Kd|Ks|Ke|Ns|d|Tr|illum|map_Kd|bump|-bm|-s|-o|-clamp|norm|Pr|Pm", "[0-9.e+-]{0,6}", "nan|inf|\\\\|#|a b", Just("\n".to_owned())], 0..60)) {
             for e in parse(Path::new("t.mtl"), words.join(" ").as_bytes()) {

@@ -603,19 +603,6 @@ mod tests {
     }
 
     #[test]
-    fn masks_come_from_alpha_or_brightness() {
-        let color = picture(4, 4, |x, _| [x as u8, 2, 3, 255]);
-        let grey = picture(2, 2, |x, _| {
-            [x as u8 * 255; 3].into_iter().chain([255]).collect::<Vec<_>>().try_into().unwrap()
-        });
-        let m = masked(Some(color), &grey, None);
-        assert_eq!((m.get_pixel(1, 0).0, m.get_pixel(2, 0).0), ([1, 2, 3, 0], [2, 2, 3, 255]));
-        let alpha = picture(1, 1, |_, _| [255, 255, 255, 7]);
-        assert_eq!(masked(None, &alpha, None).get_pixel(0, 0).0, [255, 255, 255, 7]);
-        assert_eq!(masked(None, &alpha, Some('l')).get_pixel(0, 0)[3], 255);
-    }
-
-    #[test]
     fn metals_reflect_their_colour() {
         let base = picture(2, 1, |_, _| [200, 100, 50, 255]);
         let orm = picture(2, 1, |x, _| [0, 128, x as u8 * 255, 255]);

@@ -7,7 +7,7 @@ use std::mem::offset_of;
 use std::ptr::{null, null_mut};
 
 use common::{
-    framebuffer, gl_info, good_eyes, left_handed, matrices_of, messages, texture, views_of,
+    Mistakes, framebuffer, gl_info, good_eyes, left_handed, matrices_of, messages, texture, views_of,
     views_of_matrices, zeroed,
 };
 use glow::HasContext as _;
@@ -15,9 +15,6 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
-
-/// A change that makes an argument wrong, and the code that the function then returns.
-type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
 
 #[test]
 fn impossible_eyes_return_their_codes() {

@@ -2,25 +2,14 @@
 
 #![cfg(feature = "vulkan")]
 
+mod common;
+
 use std::ffi::c_char;
-use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
 use ash::vk;
-use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use common::{Mistakes, zeroed};
 use yoro_c::*;
-
-/// A change that makes an argument wrong, and the code that the function then returns.
-type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
-
-/// Returns a structure of zeros, which are valid for all structures of the interface, with its size set.
-fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
-    // SAFETY: the structures have only numbers, handles and nullable pointers, for which zeros are valid.
-    let mut value = unsafe { MaybeUninit::<T>::zeroed().assume_init() };
-    *size(&mut value) = size_of::<T>() as u32;
-    value
-}
 
 /// A device with a command buffer that is being recorded. It lives as long as the process.
 struct Gpu {
@@ -492,40 +481,6 @@ fn wrong_vulkan_arguments_return_their_codes() {
         assert_eq!(yoro_vk_record(null_mut(), gpu.commands, &warp, &frame), YORO_ERROR_NULL);
     }
 
-    // Random sizes, displacements and positions.
-    let numbers = prop::collection::vec(prop_oneof![0u32..300, any::<u32>(), Just(f32::NAN.to_bits())], 18);
-    let config = Config { cases: 300, failure_persistence: None, ..Config::default() };
-    TestRunner::new(config)
-        .run(&numbers, |n| {
-            let displacement = |i: usize| f64::from_bits(u64::from(n[i]) << 32 | u64::from(n[i + 1]));
-            let any_warp = YoroWarp {
-                source_width: n[0],
-                source_height: n[1],
-                target_width: n[2],
-                target_height: n[3],
-                offset: displacement(4),
-                scale: displacement(6),
-                row_offset: n[8] as i32,
-                target_eye: n[9] % 3,
-                depth: n[10] % 3,
-                reserved: 0,
-            };
-            let any_frame = YoroVkFrame {
-                source: [frame.source, n[11]][n[12] as usize % 2],
-                source_x: n[13],
-                source_y: n[14],
-                target_x: n[15],
-                target_y: n[16],
-                ..frame
-            };
-            let allowed = [YORO_OK, YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_NOT_REGISTERED];
-            for code in [record(&any_warp, &frame), record(&warp, &any_frame), record(&any_warp, &any_frame)]
-            {
-                assert!(allowed.contains(&code), "{code}");
-            }
-            Ok(())
-        })
-        .unwrap();
     // SAFETY: nothing is pending; alive until the last line.
     unsafe {
         assert_eq!(yoro_vk_release_source(context, frame.source), YORO_OK);

@@ -70,7 +70,7 @@ fn post(choreographer: *mut ALooper, callback: Kind, data: *mut c_void) {
 /// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
-        System::Android, 24: [AChoreographer_getInstance, AChoreographer_postFrameCallback];
+        System::Android, 24: [AChoreographer_getInstance];
         System::Android, 29: [AChoreographer_postFrameCallback64];
         System::Android, 33: [
             AChoreographer_postVsyncCallback, AChoreographerFrameCallbackData_getFrameTimeNanos,
@@ -86,14 +86,6 @@ extern "C" fn AChoreographer_getInstance() -> *const ALooper {
         Some(looper) => looper,
         None => fatal("AChoreographer_getInstance on a thread without a looper"),
     }
-}
-
-extern "C" fn AChoreographer_postFrameCallback(
-    choreographer: *mut ALooper,
-    callback: FrameCallback,
-    data: *mut c_void,
-) {
-    post(choreographer, Kind::Frame(callback), data);
 }
 
 extern "C" fn AChoreographer_postFrameCallback64(

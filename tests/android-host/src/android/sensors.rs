@@ -217,13 +217,9 @@ pub fn exports() -> Vec<Export> {
         System::Android, 1: [
             ASensorEventQueue_disableSensor, ASensorEventQueue_getEvents, ASensorEventQueue_registerSensor,
             ASensorManager_createEventQueue, ASensorManager_destroyEventQueue, ASensorManager_getDefaultSensor,
-            ASensorManager_getInstance, ASensorManager_getInstanceForPackage, ASensor_getMinDelay, ASensor_getName,
+            ASensorManager_getInstanceForPackage, ASensor_getMinDelay, ASensor_getName,
         ];
     ]
-}
-
-extern "C" fn ASensorManager_getInstance() -> *const Sensors {
-    &raw const host().sensors
 }
 
 extern "C" fn ASensorManager_getInstanceForPackage(_package: *const c_char) -> *const Sensors {
@@ -335,42 +331,4 @@ extern "C" fn ASensor_getName(sensor: &ASensor) -> *const c_char {
 
 extern "C" fn ASensor_getMinDelay(_sensor: &ASensor) -> c_int {
     (MIN_PERIOD / 1000) as c_int
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn sensors(kinds: Vec<SensorKind>) -> Sensors {
-        Sensors::new(&Device { sensors: kinds, ..Device::default() })
-    }
-
-    #[test]
-    fn axes_are_those_of_a_phone_in_landscape() {
-        let sensors = sensors(vec![SensorKind::Accelerometer, SensorKind::GyroscopeUncalibrated]);
-        let (accelerometer, gyroscope) = (sensors.list[0], sensors.list[1]);
-        assert_eq!(sensors.sample(accelerometer, 1_000_000_000, MIN_PERIOD).data[..3], [GRAVITY, -0.0, 0.0]);
-        // A turn to the left is a rotation about the vertical, which is the device's x axis.
-        sensors.turn(90.0, 0.0, 0.0, 1_000_000_000, 1_000_000_000);
-        let rate = sensors.sample(gyroscope, 1_500_000_000, MIN_PERIOD).data;
-        assert!(rate[0] > 2.0 && rate[1].abs() < 1e-3 && rate[2].abs() < 1e-3, "{rate:?}");
-        // After looking up, the reaction to gravity points to the front of the head, which is the device's -z.
-        sensors.turn(0.0, 90.0, 0.0, 3_000_000_000, 0);
-        let up = sensors.sample(accelerometer, 3_000_000_000, MIN_PERIOD).data;
-        assert!((up[2] + GRAVITY).abs() < 1e-3, "{up:?}");
-    }
-
-    #[test]
-    fn rates_integrate_to_the_orientation() {
-        let sensors = sensors(vec![SensorKind::Gyroscope]);
-        sensors.turn(40.0, -20.0, 10.0, 1_000_000_000, 500_000_000);
-        let mut head = Quat::IDENTITY;
-        for step in 1..=120_u64 {
-            let data = sensors.sample(sensors.list[0], 1_000_000_000 + step * MIN_PERIOD, MIN_PERIOD).data;
-            // From device axes to head axes.
-            let rate = Vec3::new(-data[1], data[0], data[2]);
-            head = (head * Quat::from_scaled_axis(rate * 5e-3)).normalize();
-        }
-        assert!(head.angle_between(lock(&sensors.motion).to) < 1e-3);
-    }
 }

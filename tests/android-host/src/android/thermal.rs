@@ -38,12 +38,8 @@ extern "C" fn AThermal_getCurrentThermalStatus(_manager: *mut c_void) -> c_int {
     lock(&host().thermal).status
 }
 
-extern "C" fn AThermal_getThermalHeadroom(_manager: *mut c_void, _forecast_seconds: c_int) -> f32 {
-    headroom()
-}
-
 /// Returns the thermal headroom, or NaN if it was queried within the last second, as on Android.
-pub fn headroom() -> f32 {
+extern "C" fn AThermal_getThermalHeadroom(_manager: *mut c_void, _forecast_seconds: c_int) -> f32 {
     let now = host().clock.now();
     let last = LAST_HEADROOM.load(Ordering::Relaxed);
     if last != 0 && now.saturating_sub(last) < 1_000_000_000 {

@@ -6,7 +6,6 @@ use std::os::fd::IntoRawFd as _;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use crate::android::thermal;
 use crate::host::{Host, host, lock};
 use crate::jni::{Data, Member, Object, Value};
 use crate::script::Battery;
@@ -48,8 +47,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         | "getWindowManager"
         | "getDefaultDisplay"
         | "getDisplay"
-        | "getResources"
-        | "getDisplayMetrics"
         | "getMode"
         | "getAttributes"
         | "createChooser"
@@ -57,19 +54,14 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         | "getPackageManager"
         | "currentThread" => Value::object(Object::new(member.returned_class()?, Data::None)),
         "getApplicationContext" => Value::object(Object::new("android/app/Application", Data::None)),
-        "getPackageName" => Value::object(Object::string("org.yoro.simulated")),
         "setContextClassLoader"
         | "setName"
         | "setSystemUiVisibility"
-        | "setDecorFitsSystemWindows"
         | "setAttributes"
         | "addFlags"
-        | "clearFlags"
         | "setFlags"
         | "hide"
         | "show"
-        | "setSystemBarsBehavior"
-        | "setRequestedOrientation"
             if member.signature.ends_with(")V") =>
         {
             Value::Void
@@ -132,7 +124,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             };
             Value::Object(crate::openxr::query(&text(0)?, columns))
         }
-        "getColumnIndex" | "moveToNext" | "getString" | "isNull" | "getCount" | "close"
+        "getColumnIndex" | "moveToNext" | "getString" | "isNull" | "close"
             if matches!(receiver.data, Data::Cursor(_)) =>
         {
             let Data::Cursor(cursor) = &receiver.data else { return None };
@@ -149,7 +141,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
                 }
                 "getString" => Value::Object(cell(int(0)).map(|text| Object::string(text))),
                 "isNull" => Value::Boolean(cell(int(0)).is_none()),
-                "getCount" => Value::Int(cursor.rows.len() as i32),
                 _ => Value::Void,
             }
         }
@@ -158,15 +149,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         "getIntProperty" if class == "android/os/BatteryManager" => {
             Value::Int(battery_property(host, int(0)))
         }
-        "getLongProperty" if class == "android/os/BatteryManager" => {
-            Value::Long(battery_long_property(host, int(0)))
-        }
-        "isCharging" if class == "android/os/BatteryManager" => Value::Boolean(
-            lock(&host.battery).as_ref().is_some_and(|battery| matches!(battery.status, 2 | 5)),
-        ),
-        "getCurrentThermalStatus" => Value::Int(lock(&host.thermal).status),
-        "getThermalHeadroom" => Value::Float(thermal::headroom()),
-        "isPowerSaveMode" => Value::Boolean(false),
 
         "getIntent" => {
             let scenario =
@@ -246,11 +228,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Data::Array(items) => Value::Object(lock(items).pop().flatten()),
             _ => return None,
         },
-        "hasExtra" | "containsKey" => Value::Boolean(extra(receiver, &text(0)?).is_some()),
-        "getIntExtra" | "getInt" | "getLongExtra" | "getLong" | "getFloatExtra" | "getFloat"
-        | "getBooleanExtra" | "getBoolean" | "getDoubleExtra" | "getDouble"
-            if matches!(receiver.data, Data::Extras(_)) =>
-        {
+        "getIntExtra" => {
             let default = arguments.get(1).cloned().unwrap_or(Value::Int(0));
             match extra(receiver, &text(0)?) {
                 Some(value) if std::mem::discriminant(value) == std::mem::discriminant(&default) => {
@@ -259,19 +237,11 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
                 _ => default,
             }
         }
-        "getStringExtra" | "getCharSequenceExtra" | "getParcelableExtra" | "getString" | "get"
-            if matches!(receiver.data, Data::Extras(_)) =>
-        {
+        "getCharSequenceExtra" | "getParcelableExtra" | "get" if matches!(receiver.data, Data::Extras(_)) => {
             match extra(receiver, &text(0)?) {
                 Some(value @ Value::Object(_)) => value.clone(),
                 _ => Value::Object(None),
             }
-        }
-
-        "getExternalFilesDir" | "getExternalCacheDir" => file(host.directories.external().to_str().ok()?),
-        "getFilesDir" | "getCacheDir" => file(host.directories.internal().to_str().ok()?),
-        "getAbsolutePath" | "getPath" | "getCanonicalPath" if class == "java/io/File" => {
-            Value::object(Object::string(receiver.text()?))
         }
 
         // The display's size in its upright orientation: the window's, with width and height swapped.
@@ -279,11 +249,8 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         "getPhysicalHeight" => Value::Int(host.device.mode.map_or(host.window.size().0, |mode| mode[0])),
         "getRefreshRate" => Value::Float(host.device.refresh_hz as f32),
         "getRotation" => Value::Int(1),
-        "getDisplayId" => Value::Int(0),
-        "getWidth" => Value::Int(host.window.size().0),
-        "getHeight" => Value::Int(host.window.size().1),
-        // These fill in a DisplayMetrics, whose fields are handled below.
-        "getMetrics" | "getRealMetrics" => Value::Void,
+        // This fills in a DisplayMetrics, whose fields are handled below.
+        "getRealMetrics" => Value::Void,
         _ => return None,
     })
 }
@@ -292,27 +259,11 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
 pub fn field(member: &Member) -> Option<Value> {
     let host = host();
     let (width, height) = host.window.size();
-    let density = host.device.density as f32 / 160.0;
     Some(match (member.class.as_str(), member.name.as_str()) {
         ("android/util/DisplayMetrics", "xdpi") => Value::Float(host.device.xdpi),
         ("android/util/DisplayMetrics", "ydpi") => Value::Float(host.device.ydpi),
-        ("android/util/DisplayMetrics", "density" | "scaledDensity") => Value::Float(density),
-        ("android/util/DisplayMetrics", "densityDpi") => Value::Int(host.device.density),
         ("android/util/DisplayMetrics", "widthPixels") => Value::Int(width),
         ("android/util/DisplayMetrics", "heightPixels") => Value::Int(height),
-        ("android/os/Build$VERSION", "SDK_INT") => Value::Int(host.device.sdk),
-        ("android/os/Build$VERSION", "RELEASE") => Value::object(Object::string("simulated")),
-        ("android/os/Build", "MODEL" | "DEVICE" | "PRODUCT" | "MANUFACTURER" | "BRAND" | "HARDWARE") => {
-            Value::object(Object::string("Simulated Android host"))
-        }
-        ("android/content/Context", "BATTERY_SERVICE") => Value::object(Object::string("batterymanager")),
-        ("android/content/Context", "POWER_SERVICE") => Value::object(Object::string("power")),
-        ("android/content/Context", "WINDOW_SERVICE") => Value::object(Object::string("window")),
-        ("android/content/Context", "DISPLAY_SERVICE") => Value::object(Object::string("display")),
-        ("android/content/Intent", "ACTION_BATTERY_CHANGED") => {
-            Value::object(Object::string("android.intent.action.BATTERY_CHANGED"))
-        }
-        ("android/view/WindowInsets$Type", _) => Value::Int(0),
         _ => return None,
     })
 }
@@ -326,10 +277,6 @@ pub fn set_field(member: &Member, value: f32) {
 
 fn uri(address: &str) -> Arc<Object> {
     Object::new("android/net/Uri", Data::Text(address.to_owned()))
-}
-
-fn file(path: &str) -> Value {
-    Value::object(Object::new("java/io/File", Data::Text(path.to_owned())))
 }
 
 /// Returns a collection of strings in reverse order, since iterators take from the end.
@@ -349,11 +296,6 @@ fn system_service(name: &str) -> Value {
     let class = match name {
         "batterymanager" => "android/os/BatteryManager",
         "power" => "android/os/PowerManager",
-        "window" => "android/view/WindowManager",
-        "display" => "android/hardware/display/DisplayManager",
-        "sensor" => "android/hardware/SensorManager",
-        "vibrator" => "android/os/Vibrator",
-        "activity" => "android/app/ActivityManager",
         _ => return Value::Object(None),
     };
     Value::object(Object::new(class, Data::None))
@@ -369,14 +311,10 @@ fn battery_intent(host: &Host) -> Option<Arc<Object>> {
         ("temperature", decidegrees),
         ("plugged", plugged),
         ("status", status),
-        ("health", 2),
     ]
     .map(|(key, value)| (key.to_owned(), Value::Int(value)))
     .into_iter()
-    .chain([
-        ("present".to_owned(), Value::Boolean(true)),
-        ("technology".to_owned(), Value::object(Object::string("simulated"))),
-    ])
+    .chain([("present".to_owned(), Value::Boolean(true))])
     .collect();
     Some(Object::new("android/content/Intent", Data::Extras(extras)))
 }
@@ -387,20 +325,8 @@ fn battery_property(host: &Host, property: i32) -> i32 {
     match property {
         1 => battery.charge_counter.unwrap_or(UNSUPPORTED),
         2 => battery.current_now.unwrap_or(UNSUPPORTED),
-        3 => battery.current_average.unwrap_or(UNSUPPORTED),
         4 => battery.level,
         6 => battery.status,
         _ => UNSUPPORTED,
-    }
-}
-
-fn battery_long_property(host: &Host, property: i32) -> i64 {
-    match property {
-        5 => lock(&host.battery).as_ref().and_then(|battery| battery.energy_counter).unwrap_or(i64::MIN),
-        // BatteryService widens the int, and returns the long's MIN_VALUE for the int's.
-        other => match battery_property(host, other) {
-            UNSUPPORTED => i64::MIN,
-            value => i64::from(value),
-        },
     }
 }

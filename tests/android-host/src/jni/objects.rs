@@ -63,7 +63,7 @@ impl Object {
         Self::new("java/lang/Class", Data::Class(name.to_owned()))
     }
 
-    /// Returns the text of a string, or the path of a file.
+    /// Returns the text of a string.
     pub fn text(&self) -> Option<&str> {
         match &self.data {
             Data::Text(text) => Some(text),
@@ -208,11 +208,6 @@ impl Jni {
             Some(reference) => Some(reference.object.clone()),
             None => fatal("JNI: a reference was used that does not exist any more"),
         }
-    }
-
-    /// Returns the kind of a reference, or `None` if the reference does not exist.
-    pub(super) fn kind(&self, handle: jobject) -> Option<Kind> {
-        lock(&self.references).live.get(&(handle as usize)).map(|reference| reference.kind)
     }
 
     /// Returns the unique identifier of a member.

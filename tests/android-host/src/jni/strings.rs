@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::ffi::{CString, c_char};
 use std::sync::Mutex;
 
-use jni_sys::{jboolean, jchar, jint, jobject, jsize};
+use jni_sys::{jboolean, jint, jobject, jsize};
 
 use super::table::{Env, get, local};
 use super::{Data, Object};
@@ -20,10 +20,6 @@ static CHARACTERS: Mutex<Option<HashMap<usize, Box<[u8]>>>> = Mutex::new(None);
 
 fn string(handle: jobject) -> String {
     get(handle, "a string function").text().unwrap_or_default().to_owned()
-}
-
-fn utf16(handle: jobject) -> Vec<u16> {
-    string(handle).encode_utf16().collect()
 }
 
 /// Keeps a copy for the application until it is released.
@@ -47,24 +43,6 @@ pub(super) unsafe extern "system" fn NewStringUTF(_env: Env, characters: *const 
     local(Some(Object::string(&unsafe { text(characters) })))
 }
 
-pub(super) unsafe extern "system" fn NewString(
-    _env: Env,
-    characters: *const jchar,
-    length: jsize,
-) -> jobject {
-    // SAFETY: `length` characters by contract.
-    let characters = unsafe { std::slice::from_raw_parts(characters, length.max(0) as usize) };
-    local(Some(Object::string(&String::from_utf16_lossy(characters))))
-}
-
-pub(super) extern "system" fn GetStringUTFLength(_env: Env, handle: jobject) -> jint {
-    string(handle).len() as jsize
-}
-
-pub(super) extern "system" fn GetStringLength(_env: Env, handle: jobject) -> jint {
-    utf16(handle).len() as jsize
-}
-
 pub(super) unsafe extern "system" fn GetStringUTFChars(
     _env: Env,
     handle: jobject,
@@ -77,58 +55,8 @@ pub(super) unsafe extern "system" fn GetStringUTFChars(
     lend(CString::new(string(handle)).unwrap_or_default().into_bytes_with_nul()).cast()
 }
 
-pub(super) unsafe extern "system" fn GetStringChars(
-    _env: Env,
-    handle: jobject,
-    copied: *mut jboolean,
-) -> *const jchar {
-    if !copied.is_null() {
-        // SAFETY: not null, so the caller gives room for one jboolean.
-        unsafe { copied.write(true) };
-    }
-    lend(utf16(handle).into_iter().chain([0]).flat_map(u16::to_ne_bytes).collect()).cast()
-}
-
 pub(super) extern "system" fn ReleaseStringUTFChars(_env: Env, _handle: jobject, characters: *const c_char) {
     take_back(characters);
-}
-
-pub(super) extern "system" fn ReleaseStringChars(_env: Env, _handle: jobject, characters: *const jchar) {
-    take_back(characters);
-}
-
-pub(super) unsafe extern "system" fn GetStringRegion(
-    _env: Env,
-    handle: jobject,
-    start: jsize,
-    length: jsize,
-    out: *mut jchar,
-) {
-    let characters = utf16(handle);
-    let Some(region) = characters.get(start as usize..(start + length) as usize) else {
-        fatal("JNI: GetStringRegion beyond the string")
-    };
-    // SAFETY: the caller gives room for `length` characters.
-    unsafe { std::ptr::copy_nonoverlapping(region.as_ptr(), out, region.len()) };
-}
-
-pub(super) unsafe extern "system" fn GetStringUTFRegion(
-    _env: Env,
-    handle: jobject,
-    start: jsize,
-    length: jsize,
-    out: *mut c_char,
-) {
-    let characters = utf16(handle);
-    let Some(region) = characters.get(start as usize..(start + length) as usize) else {
-        fatal("JNI: GetStringUTFRegion beyond the string")
-    };
-    let region = String::from_utf16_lossy(region);
-    // SAFETY: the caller gives room for the region in UTF-8 and a NUL.
-    unsafe {
-        std::ptr::copy_nonoverlapping(region.as_ptr().cast(), out, region.len());
-        out.add(region.len()).write(0);
-    }
 }
 
 pub(super) extern "system" fn GetArrayLength(_env: Env, handle: jobject) -> jint {

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use jni_sys::{
     JNI_EDETACHED, JNI_ERR, JNI_OK, JNI_VERSION_1_6, JNIEnv, JNIInvokeInterface_, JNINativeInterface_,
-    JavaVM, jboolean, jdouble, jfieldID, jfloat, jint, jlong, jmethodID, jobject, jobjectRefType, jvalue,
+    JavaVM, jboolean, jdouble, jfieldID, jfloat, jint, jlong, jmethodID, jobject, jvalue,
 };
 
 use super::objects::Kind;
@@ -98,14 +98,13 @@ fn fill(table: &mut jni_sys::JNINativeInterface__1_6) {
         ($($function:ident)*) => { $(table.$function = $function;)* };
     }
     put! {
-        GetVersion FindClass GetSuperclass IsAssignableFrom ExceptionOccurred ExceptionDescribe ExceptionClear
-        ExceptionCheck FatalError PushLocalFrame PopLocalFrame EnsureLocalCapacity NewLocalRef NewGlobalRef
-        NewWeakGlobalRef DeleteLocalRef DeleteGlobalRef DeleteWeakGlobalRef IsSameObject GetObjectRefType
+        GetVersion FindClass GetSuperclass IsAssignableFrom ExceptionOccurred ExceptionDescribe
+        ExceptionClear ExceptionCheck FatalError PushLocalFrame PopLocalFrame EnsureLocalCapacity NewLocalRef
+        NewGlobalRef NewWeakGlobalRef DeleteLocalRef DeleteGlobalRef DeleteWeakGlobalRef IsSameObject
         GetObjectClass IsInstanceOf GetMethodID GetFieldID NewObjectA CallObjectMethodA CallBooleanMethodA
         CallIntMethodA CallLongMethodA CallFloatMethodA CallDoubleMethodA CallVoidMethodA GetObjectField
-        GetBooleanField GetIntField GetLongField GetFloatField GetDoubleField SetFloatField NewString GetStringLength
-        GetStringChars ReleaseStringChars GetStringRegion NewStringUTF GetStringUTFLength GetStringUTFChars
-        ReleaseStringUTFChars GetStringUTFRegion GetArrayLength NewObjectArray GetObjectArrayElement
+        GetBooleanField GetIntField GetLongField GetFloatField GetDoubleField SetFloatField NewStringUTF
+        GetStringUTFChars ReleaseStringUTFChars GetArrayLength NewObjectArray GetObjectArrayElement
         SetObjectArrayElement MonitorEnter MonitorExit GetJavaVM
     }
     // A static call passes a class in place of the object, and is otherwise the same.
@@ -275,15 +274,6 @@ extern "system" fn IsSameObject(_env: Env, one: jobject, other: jobject) -> jboo
         }
         (None, None) => true,
         _ => false,
-    }
-}
-
-extern "system" fn GetObjectRefType(_env: Env, handle: jobject) -> jobjectRefType {
-    match host().jni.kind(handle) {
-        None => jobjectRefType::JNIInvalidRefType,
-        Some(Kind::Local) => jobjectRefType::JNILocalRefType,
-        Some(Kind::Global) => jobjectRefType::JNIGlobalRefType,
-        Some(Kind::Weak) => jobjectRefType::JNIWeakGlobalRefType,
     }
 }
 

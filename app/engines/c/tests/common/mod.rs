@@ -8,9 +8,12 @@ use std::mem::MaybeUninit;
 use glow::HasContext;
 use yoro_c::*;
 
+/// A change that makes an argument wrong, and the code that the function then returns.
+pub type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
+
 /// Returns a structure of zeros, which are valid for all structures of the interface, with its size set.
 pub fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
-    // SAFETY: the structures have only numbers and nullable pointers, for which zeros are valid.
+    // SAFETY: the structures have only numbers, handles and nullable pointers, for which zeros are valid.
     let mut value = unsafe { MaybeUninit::<T>::zeroed().assume_init() };
     *size(&mut value) = size_of::<T>() as u32;
     value

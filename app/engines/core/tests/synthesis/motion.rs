@@ -268,47 +268,6 @@ fn still_frames_and_eyes_in_one_place_change_nothing() {
     });
 }
 
-/// Carried to the other eye and back, vectors are what they were, where both eyes see.
-#[test]
-fn there_and_back_is_the_same() {
-    on_every_backend(|gl| {
-        for (n, ndc) in [Ndc::ZeroToOne, Ndc::MinusOneToOne].into_iter().enumerate() {
-            let space = VectorSpace { ndc, of: VectorsOf::Eye };
-            let dominant = Eye::BOTH[n];
-            let [right, left] = [dominant, dominant.other()]
-                .map(|dominant| Frames::new(dominant, DepthConvention::Reversed, true, GuardBand::None));
-            // One frustum for both eyes, so that the source is the eye.
-            let same = |mut pair: EyePair| {
-                pair.frusta = [pair.frusta[0]; 2];
-                pair
-            };
-            let [there, back] = [right, left].map(|f| {
-                let [now, then] =
-                    [f.now, f.then].map(|pair| same(pair).synthesis_views(GuardBand::None).unwrap());
-                now.motion(&then, space).unwrap()
-            });
-            let [width, height] = there.warp.source_size.map(|n| n as usize);
-            let smooth = |i: usize| {
-                let [x, y] = [(i % width) as f32, (i / width) as f32];
-                [(x * 0.02).sin() * 0.1, (y * 0.03).cos() * 0.1, (x * 0.01 + y * 0.02).sin() * 0.02, 0.0]
-            };
-            let vectors: Vec<[f32; 4]> = (0..width * height).map(smooth).collect();
-            // A slanted wall, of which each eye sees all but its border.
-            let range = DepthRange { near: 0.3, far: 60.0, convention: DepthConvention::Reversed };
-            let depth: Vec<f32> =
-                (0..width * height).map(|i| range.depth(1.0 / (0.4 + 0.001 * (i % width) as f32))).collect();
-            let other = run(gl, &vectors, &depth, &there, Format::Rgba32F);
-            let again = run(gl, &other.vectors, &other.depth, &back, Format::Rgba32F);
-            for i in (0..width * height).filter(|i| (30..width - 30).contains(&(i % width))) {
-                for c in 0..3 {
-                    let off = (again.vectors[i][c] - vectors[i][c]).abs();
-                    assert!(off < 4e-4, "{ndc:?}, {i}: {:?} for {:?}", again.vectors[i], vectors[i]);
-                }
-            }
-        }
-    });
-}
-
 /// A square that moves past a still wall: what it uncovers in the other eye moves with the wall, and no vector lies between.
 #[test]
 fn a_hole_moves_with_its_background() {

@@ -467,22 +467,6 @@ fn pictures_do_not_depend_on_the_hosts_state() {
     });
 }
 
-/// This includes uploads and readbacks of images in memory.
-#[test]
-fn images_in_memory_do_not_depend_on_the_hosts_state() {
-    on_every_backend(|gl| {
-        let warp = warp([61, 20]);
-        let (rgba, depth) =
-            scene(warp.source_size, pair([61, 20], Eye::Right, 0.063, DepthConvention::Standard).depth, 3);
-        let run = || super::subject().in_memory(gl).run(&rgba, &depth, &warp);
-        let want = run();
-        let hostile = Hostile::new(gl);
-        hostile.set(gl);
-        assert!(run() == want);
-        hostile.delete(gl);
-    });
-}
-
 #[test]
 fn the_hosts_state_is_preserved() {
     on_every_backend(|gl| {

@@ -234,9 +234,8 @@ fn a_view_that_cannot_be_synthesized_is_shown_to_both_eyes() {
         Submitted { depth: submitted.depth.map(|(part, planes)| (change(part), planes)), ..submitted }
     }
     let plain = Habits::PLAIN;
-    let cases: [(&str, Habits, Spoil); 6] = [
+    let cases: [(&str, Habits, Spoil); 5] = [
         ("it submits no depth", Habits { submits_depth: false, ..plain }, |s| s),
-        ("it submits no depth", Habits { submits_depth: false, layers: [2, 1], ..plain }, |s| s),
         ("have different sizes or rectangles", Habits { margin: [4, 4], ..plain }, |s| {
             with_depth_part(s, |part| Part { origin: [3, 4], ..part })
         }),

@@ -1,6 +1,6 @@
 //! Calls to functions of extensions.
 
-use std::ffi::CStr;
+use std::ffi::{CStr, c_void};
 use std::ptr;
 
 use openxr_sys as sys;
@@ -12,41 +12,27 @@ use super::{Chain, Client, Frame, Outcome, Submitted, check};
 impl Client<'_> {
     /// Returns the near and far planes that the runtime recommends in structures chained to the configuration's views.
     pub fn chained_depth_ranges(&self, count: usize) -> Outcome<Vec<[f32; 2]>> {
-        // SAFETY: plain data; the types and chains are set below.
-        let (empty, empty_view) =
-            unsafe { (std::mem::zeroed::<sys::ViewConfigurationDepthRangeEXT>(), std::mem::zeroed()) };
-        let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
-        let mut chained = vec![sys::ViewConfigurationDepthRangeEXT { ty, ..empty }; count];
-        let view = |range: &mut sys::ViewConfigurationDepthRangeEXT| sys::ViewConfigurationView {
+        let view = |next| sys::ViewConfigurationView {
             ty: sys::ViewConfigurationView::TYPE,
-            next: ptr::from_mut(range).cast(),
-            ..empty_view
+            next,
+            // SAFETY: plain data.
+            ..unsafe { std::mem::zeroed() }
         };
-        let mut views: Vec<_> = chained.iter_mut().map(view).collect();
-        let (mut number, room) = (0, count as u32);
-        let call = self.xr.enumerate_view_configuration_views;
-        // SAFETY: room for as many elements as stated.
-        let result =
-            unsafe { call(self.instance, self.system, self.views, room, &mut number, views.as_mut_ptr()) };
-        check("xrEnumerateViewConfigurationViews", result)?;
-        Ok(chained.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
+        chained(count, view, |views| {
+            let (mut number, room) = (0, count as u32);
+            let call = self.xr.enumerate_view_configuration_views;
+            let place = views.as_mut_ptr();
+            // SAFETY: room for as many elements as stated.
+            let result = unsafe { call(self.instance, self.system, self.views, room, &mut number, place) };
+            check("xrEnumerateViewConfigurationViews", result).map(drop)
+        })
     }
 
     /// Returns what the runtime writes to structures chained to the located views.
     pub fn chained_to_located(&self, frame: Frame, count: usize) -> Outcome<Vec<[f32; 2]>> {
-        // SAFETY: plain data; the types and chains are set below.
-        let (empty, empty_view) =
-            unsafe { (std::mem::zeroed::<sys::ViewConfigurationDepthRangeEXT>(), std::mem::zeroed()) };
-        let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
-        let mut chained = vec![sys::ViewConfigurationDepthRangeEXT { ty, ..empty }; count];
-        let view = |range: &mut sys::ViewConfigurationDepthRangeEXT| sys::View {
-            ty: sys::View::TYPE,
-            next: ptr::from_mut(range).cast(),
-            ..empty_view
-        };
-        let mut views: Vec<_> = chained.iter_mut().map(view).collect();
-        self.locate_views(frame, &mut views)?;
-        Ok(chained.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
+        // SAFETY: plain data.
+        let view = |next| sys::View { ty: sys::View::TYPE, next, ..unsafe { std::mem::zeroed() } };
+        chained(count, view, |views| self.locate_views(frame, views).map(drop))
     }
 
     /// Returns the reprojection modes of a view configuration.
@@ -130,4 +116,19 @@ impl Client<'_> {
         let info = self.chain_info(format, size, 1);
         self.chain_of(&sys::SwapchainCreateInfo { next: (&raw const more).cast(), ..info })
     }
+}
+
+/// Makes views that each have a structure chained to them, and returns the near and far planes that `ask` finds there.
+fn chained<V>(
+    count: usize,
+    view: impl Fn(*mut c_void) -> V,
+    ask: impl FnOnce(&mut [V]) -> Outcome<()>,
+) -> Outcome<Vec<[f32; 2]>> {
+    let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
+    // SAFETY: plain data.
+    let range = sys::ViewConfigurationDepthRangeEXT { ty, ..unsafe { std::mem::zeroed() } };
+    let mut ranges = vec![range; count];
+    let mut views: Vec<V> = ranges.iter_mut().map(|range| view(ptr::from_mut(range).cast())).collect();
+    ask(&mut views)?;
+    Ok(ranges.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
 }
