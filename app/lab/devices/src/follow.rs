@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::time::Duration;
 
-use super::adb::{Device, DeviceError, LogEvent, LogStream};
+use super::adb::{Device, DeviceError, LogEvent, LogStream, now, sleep};
 use super::capture::{Fault, FaultKind};
 use super::{log, phone};
 
@@ -45,8 +45,8 @@ pub fn faults_of_loss(at_s: f64, seconds: f64, rebooted: bool) -> Vec<Fault> {
 
 /// A log that is followed across lost connections.
 pub struct Follower<'a> {
-    device: &'a dyn Device,
-    stream: Option<Box<dyn LogStream>>,
+    device: &'a Device,
+    stream: Option<LogStream>,
     seen: VecDeque<u64>,
     /// True after a lost connection, when lines may repeat.
     overlaps: bool,
@@ -57,7 +57,7 @@ pub struct Follower<'a> {
 
 impl<'a> Follower<'a> {
     /// Starts to follow the log from now on, or from the oldest line that the device still has.
-    pub fn new(device: &'a dyn Device, from_oldest: bool) -> Result<Follower<'a>, DeviceError> {
+    pub fn new(device: &'a Device, from_oldest: bool) -> Result<Follower<'a>, DeviceError> {
         let boot = phone::boot_id(device)?;
         let since = if from_oldest { None } else { Some(phone::clock(device)?) };
         let stream = Some(device.logcat(since.as_deref())?);
@@ -67,7 +67,7 @@ impl<'a> Follower<'a> {
 
     /// Returns the seconds since the device was lost, or `None` if it is connected.
     pub fn lost_for(&self) -> Option<f64> {
-        self.lost_at.map(|then| self.device.now() - then)
+        self.lost_at.map(|then| now() - then)
     }
 
     /// Returns the next event. Waits for `wait`, or somewhat longer if a device does not answer.
@@ -86,7 +86,7 @@ impl<'a> Follower<'a> {
                 }
                 LogEvent::Ended => {
                     self.stream = None;
-                    self.lost_at = Some(self.device.now());
+                    self.lost_at = Some(now());
                     return Ok(Event::Lost);
                 }
             }
@@ -120,7 +120,7 @@ impl<'a> Follower<'a> {
             Ok(event) => Ok(event),
             Err(error) if error.is_lost() => {
                 self.device.reconnect();
-                self.device.sleep(RETRY);
+                sleep(RETRY);
                 Ok(Event::Quiet)
             }
             Err(error) => Err(error),

@@ -5,7 +5,7 @@
 
 use super::adb::{Device, DeviceError};
 use super::capture::DeviceInfo;
-use super::phone::{self, set_property};
+use super::phone;
 
 /// The file on the device with the values to restore.
 const FILE: &str = "/data/local/tmp/yoro-restore.txt";
@@ -80,7 +80,7 @@ impl HeldSetting {
     }
 
     /// Reads the current value.
-    fn now(device: &dyn Device, place: &Place) -> Result<HeldSetting, DeviceError> {
+    fn now(device: &Device, place: &Place) -> Result<HeldSetting, DeviceError> {
         let value = match place {
             Place::Setting(table, key) => device.shell(&["settings", "get", table.name(), key])?,
             Place::Property(name) => device.shell(&["getprop", name])?,
@@ -89,7 +89,7 @@ impl HeldSetting {
         Ok(HeldSetting::new(place.clone(), &value))
     }
 
-    fn set(&self, device: &dyn Device) -> Result<(), DeviceError> {
+    fn set(&self, device: &Device) -> Result<(), DeviceError> {
         match (&self.place, &self.value) {
             (Place::Setting(table, key), Some(value)) => {
                 device.shell(&["settings", "put", table.name(), key, value]).map(drop)
@@ -97,7 +97,10 @@ impl HeldSetting {
             (Place::Setting(table, key), None) => {
                 device.shell(&["settings", "delete", table.name(), key]).map(drop)
             }
-            (Place::Property(name), value) => set_property(device, name, value.as_deref().unwrap_or("")),
+            // Setting a property to an empty text removes it.
+            (Place::Property(name), value) => {
+                device.shell(&["setprop", name, value.as_deref().unwrap_or("")]).map(drop)
+            }
             (Place::Worn, value) => {
                 let word = if value.is_some() { "prox_close" } else { "automation_disable" };
                 let action = format!("com.oculus.vrpowermanager.{word}");
@@ -146,7 +149,7 @@ impl HeldSettings {
     ///
     /// # Errors
     /// [`DeviceError`]. The next call restores everything that was changed.
-    pub fn new(device: &dyn Device, info: &DeviceInfo, wanted: &Wanted) -> Result<HeldSettings, DeviceError> {
+    pub fn new(device: &Device, info: &DeviceInfo, wanted: &Wanted) -> Result<HeldSettings, DeviceError> {
         restore_leftovers(device)?;
         let mut settings = settings_to_hold(info, wanted);
         for (name, value) in phone::properties(device)? {
@@ -171,7 +174,7 @@ impl HeldSettings {
     }
 
     /// Sets all values again if the device was restarted, which resets system properties and the wear state.
-    pub fn renew(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
+    pub fn renew(&mut self, device: &Device) -> Result<(), DeviceError> {
         let boot = phone::boot_id(device)?;
         if boot == self.boot {
             return Ok(());
@@ -185,7 +188,7 @@ impl HeldSettings {
         &self.refused
     }
 
-    fn hold(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
+    fn hold(&mut self, device: &Device) -> Result<(), DeviceError> {
         self.refused.clear();
         for held in &self.wanted {
             match hold(device, held) {
@@ -198,7 +201,7 @@ impl HeldSettings {
     }
 
     /// Restores all values. If the device is gone, the next measurement on it does so.
-    pub fn restore(self, device: &dyn Device) -> Result<(), DeviceError> {
+    pub fn restore(self, device: &Device) -> Result<(), DeviceError> {
         restore(device, &self.before)
     }
 }
@@ -235,7 +238,7 @@ fn settings_to_hold(info: &DeviceInfo, wanted: &Wanted) -> Vec<HeldSetting> {
 }
 
 /// Sets a value and checks that the device has kept it.
-fn hold(device: &dyn Device, held: &HeldSetting) -> Result<(), DeviceError> {
+fn hold(device: &Device, held: &HeldSetting) -> Result<(), DeviceError> {
     held.set(device)?;
     if held.place == Place::Worn {
         return Ok(());
@@ -246,11 +249,10 @@ fn hold(device: &dyn Device, held: &HeldSetting) -> Result<(), DeviceError> {
         return Ok(());
     }
     let value = now.value.as_deref().unwrap_or(UNSET);
-    let reason = format!("it is still {value}");
-    Err(DeviceError::Refused { serial: device.serial().into(), command: held.line().trim().into(), reason })
+    Err(device.refused(held.line().trim(), format!("it is still {value}")))
 }
 
-fn restore(device: &dyn Device, before: &[HeldSetting]) -> Result<(), DeviceError> {
+fn restore(device: &Device, before: &[HeldSetting]) -> Result<(), DeviceError> {
     for held in before {
         match held.set(device) {
             Err(error) if error.is_lost() => return Err(error),
@@ -262,7 +264,7 @@ fn restore(device: &dyn Device, before: &[HeldSetting]) -> Result<(), DeviceErro
 }
 
 /// Restores the values that a killed measurement has left on the device.
-pub fn restore_leftovers(device: &dyn Device) -> Result<(), DeviceError> {
+fn restore_leftovers(device: &Device) -> Result<(), DeviceError> {
     let text = match device.shell(&["cat", FILE]) {
         Ok(text) => text,
         Err(DeviceError::Refused { .. }) => return Ok(()),

@@ -162,8 +162,6 @@ pub enum FaultKind {
     TooWarm,
     /// The device gives the voltage in whole volts.
     VoltageInVolts,
-    /// The power is outside the plausible range, so its current or voltage is wrong.
-    ImplausiblePower,
     /// The device refused to hold a value fixed.
     NotPinned,
     /// The display did not keep the requested refresh rate.

@@ -18,7 +18,6 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::capture::{Capture, FaultKind};
-use super::mean_power::implausible;
 pub use compare::{Difference, Mean};
 pub use run::{ByLevel, Counted, Exclusion, Integrated, Quantity, Run};
 use yoro_report::{CONFIDENCE, Report, ReportError, ReportFiles};
@@ -311,11 +310,13 @@ fn faults(runs: &[Run]) -> Vec<Note> {
             notes.push(Note { name: "gaps", of: run.name(), detail });
         }
         let mut note = |name, detail| notes.push(Note { name, of: run.name(), detail });
-        let is_reported = run.faults.iter().any(|fault| fault.kind == FaultKind::ImplausiblePower);
-        if let Some(detail) =
-            run.integrated.filter(|_| !is_reported).and_then(|found| implausible(found.milliwatts))
-        {
-            note(fault_name(FaultKind::ImplausiblePower), detail);
+        if let Some(found) = run.integrated.filter(Integrated::is_implausible) {
+            let detail = format!(
+                "a mean power of {:.1} mW is implausible (below 100 mW or above 30 W): the unit of the battery's current \
+                 or voltage is another one",
+                found.milliwatts
+            );
+            note("implausible power", detail);
         }
         let counted = run.counted.filter(|_| run.counts(Quantity::Power));
         if counted.is_some_and(|counted| counted.scale >= run::MILLI) {
@@ -357,7 +358,6 @@ fn fault_name(kind: FaultKind) -> &'static str {
         FaultKind::Restarted => "application restarted",
         FaultKind::TooWarm => "too warm",
         FaultKind::VoltageInVolts => "voltage in V",
-        FaultKind::ImplausiblePower => "implausible power",
         FaultKind::NotPinned => "not pinned",
         FaultKind::RefreshRate => "refresh rate",
         FaultKind::Pictures => "pictures",

@@ -114,6 +114,13 @@ pub struct Integrated {
     pub seconds: f64,
 }
 
+impl Integrated {
+    /// True if no phone or headset that renders takes this power. Charging, up to 0, is excluded elsewhere.
+    pub fn is_implausible(&self) -> bool {
+        self.milliwatts > 0.0 && !(100.0..=30_000.0).contains(&self.milliwatts)
+    }
+}
+
 /// Power from the battery's charge counter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Counted {

@@ -296,7 +296,6 @@ fn worthless_runs_are_left_out_with_the_reason() {
         FaultKind::TooWarm,
         FaultKind::NoCurrent,
         FaultKind::VoltageInVolts,
-        FaultKind::ImplausiblePower,
         FaultKind::NotPinned,
         FaultKind::RefreshRate,
         FaultKind::Pictures,

@@ -12,12 +12,10 @@ use super::which::WhichArgs;
 use crate::cli::Subcommand;
 use crate::cli::args::{self, parse_positive};
 use crate::cli::message;
-use yoro_devices::adb::{Device, DeviceError};
+use yoro_devices::adb::{Device, DeviceError, now};
 use yoro_devices::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION, Writer};
-use yoro_devices::external_app::{ExternalApp, Subject};
 use yoro_devices::follow::{Event, Follower, faults_of_loss};
 use yoro_devices::log::{self, SIMULATED_MARK};
-use yoro_devices::mean_power::MeanPower;
 use yoro_devices::phone;
 use yoro_devices::reading::{LineContent, Reading};
 use yoro_files::FileError;
@@ -45,12 +43,6 @@ pub struct LogcatArgs {
     /// Begin with the oldest line that the device still has
     #[arg(long, conflicts_with = "file")]
     from_oldest: bool,
-    /// Read only the lines of this application, on a Meta headset; this computer reads the battery
-    #[arg(long, value_name = "PACKAGE", conflicts_with = "file")]
-    package: Option<String>,
-    /// The process that logs its frame rates [default: the package]
-    #[arg(long, value_name = "NAME", requires = "package")]
-    log_process: Option<String>,
     /// Name of the method in the capture [default: what the log says]
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
@@ -113,28 +105,18 @@ fn live(args: &LogcatArgs) -> anyhow::Result<()> {
     let devices = args.which.choose()?;
     let [device] = &devices[..] else {
         let serials = devices.iter().map(|device| device.serial().to_owned()).collect();
-        return Err(DeviceError::Several { serials }).context("one log at a time");
+        return Err(DeviceError::Several(serials)).context("one log at a time");
     };
-    let device = &**device;
     let info = phone::info(device)?;
-    let began = device.now();
+    let began = now();
     let out = args.out.clone().unwrap_or_else(|| {
         let time = SystemTime::UNIX_EPOCH + Duration::from_secs(began as u64);
         let time = humantime::format_rfc3339_seconds(time).to_string();
         PathBuf::from(format!("out/logcat-{}", time.replace([':', '-', 'Z'], "").replace('T', "-")))
     });
-    let package = args.package.as_deref().unwrap_or(phone::PACKAGE);
-    let version = phone::version(device, package)?;
-    if version.is_none() && args.package.is_some() {
-        return Err(DeviceError::NoPackage { serial: device.serial().into(), package: package.into() }.into());
-    }
+    let version = phone::version(device, phone::PACKAGE)?;
     let mut follower = Follower::new(device, args.from_oldest)?;
     let mut table = Table::new(Some(&out), args, info, began, version)?;
-    if args.package.is_some() {
-        let process = args.log_process.as_deref().unwrap_or(package);
-        let subject = Subject { package: package.into(), process: process.into() };
-        table.external_app = Some(ExternalApp::new(device, subject)?);
-    }
     let done = follow(args, device, &mut follower, &mut table, began);
     // The capture records why it ended.
     table.finish()?;
@@ -143,18 +125,18 @@ fn live(args: &LogcatArgs) -> anyhow::Result<()> {
 
 fn follow(
     args: &LogcatArgs,
-    device: &dyn Device,
+    device: &Device,
     follower: &mut Follower,
     table: &mut Table<'_>,
     began: f64,
 ) -> anyhow::Result<()> {
     let mut last = began;
     while !interrupt::requested()
-        && args.seconds.is_none_or(|seconds| device.now() - began < f64::from(seconds))
+        && args.seconds.is_none_or(|seconds| now() - began < f64::from(seconds))
     {
         match follower.next(Duration::from_secs(1))? {
             Event::Line(line) => {
-                let now = device.now();
+                let now = now();
                 table.line(&line, Some(now - last))?;
                 last = now;
             }
@@ -174,8 +156,6 @@ fn follow(
 struct Table<'a> {
     args: &'a LogcatArgs,
     reading: Reading,
-    external_app: Option<ExternalApp<'a>>,
-    power: MeanPower,
     writer: Option<Writer>,
     own_faults: Vec<Fault>,
     rows: u64,
@@ -214,8 +194,6 @@ impl<'a> Table<'a> {
         Ok(Table {
             args,
             reading: Reading::new(None),
-            external_app: None,
-            power: MeanPower::default(),
             writer,
             own_faults: Vec::new(),
             rows: 0,
@@ -234,9 +212,7 @@ impl<'a> Table<'a> {
             self.simulated = true;
             println!("SIMULATED: {}", line.trim_matches(['-', ' ']));
         }
-        let is_own = self.external_app.as_mut().map_or(Ok(true), |app| app.accepts(line))?;
-        let news = if is_own { self.reading.line(line, passed_s) } else { LineContent::Other };
-        match news {
+        match self.reading.line(line, passed_s) {
             LineContent::Sample(sample) => self.sample(*sample)?,
             LineContent::Damaged(why) => {
                 let text: String = line.chars().take(60).collect();
@@ -247,18 +223,15 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    fn sample(&mut self, mut sample: Sample) -> anyhow::Result<()> {
-        if let Some(app) = &mut self.external_app {
-            app.complete(&mut sample, &mut self.reading)?;
-        }
-        self.power.add(&sample);
+    fn sample(&mut self, sample: Sample) -> anyhow::Result<()> {
         if let Some(writer) = &mut self.writer {
             writer.sample(&sample)?;
         }
-        self.row(&sample)
+        self.row(&sample);
+        Ok(())
     }
 
-    fn row(&mut self, sample: &Sample) -> anyhow::Result<()> {
+    fn row(&mut self, sample: &Sample) {
         let head = [
             "TIME", "FPS", "STALE", "FRAME ms", "P99 ms", "GPU ms", "CPU %", "RSS MB", "mA", "W", "LEVEL %",
             "BATT C", "SKIN C", "PLUG", "THERMAL",
@@ -301,7 +274,6 @@ impl<'a> Table<'a> {
             whole(sample.thermal_status),
         ]);
         println!("{row}");
-        Ok(())
     }
 
     fn back(&mut self, seconds: f64, rebooted: bool) -> anyhow::Result<()> {
@@ -317,11 +289,8 @@ impl<'a> Table<'a> {
         if let Some(last) = self.reading.end() {
             self.sample(last)?;
         }
-        if let (Some(app), 0) = (&self.external_app, self.reading.samples()) {
-            println!("{}", app.silence());
-        }
         let own = self.own_faults.iter().cloned();
-        let faults: Vec<Fault> = own.chain(self.reading.faults()).chain(self.power.fault()).collect();
+        let faults: Vec<Fault> = own.chain(self.reading.faults()).collect();
         for fault in &faults {
             let at = fault.at_s.map_or(String::new(), |at_s| format!(" (from {at_s:.0} s)"));
             println!("fault: {}{at}", fault.detail);
