@@ -32,31 +32,14 @@ pub struct Wanted {
     pub refresh_hz: Option<f64>,
 }
 
-/// A table of Android's settings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Table {
-    System,
-    Secure,
-    Global,
-}
-
-impl Table {
-    const ALL: [Table; 3] = [Table::System, Table::Secure, Table::Global];
-
-    fn name(self) -> &'static str {
-        match self {
-            Table::System => "system",
-            Table::Secure => "secure",
-            Table::Global => "global",
-        }
-    }
-}
+/// The tables of Android's settings.
+const TABLES: [&str; 3] = ["system", "secure", "global"];
 
 /// Where a value is stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Place {
     /// `settings get TABLE KEY`.
-    Setting(Table, String),
+    Setting(&'static str, String),
     /// `getprop KEY`.
     Property(String),
     /// The proximity sensor of a Meta headset, which can be overridden but not read.
@@ -82,7 +65,7 @@ impl HeldSetting {
     /// Reads the current value.
     fn now(device: &Device, place: &Place) -> Result<HeldSetting, DeviceError> {
         let value = match place {
-            Place::Setting(table, key) => device.shell(&["settings", "get", table.name(), key])?,
+            Place::Setting(table, key) => device.shell(&["settings", "get", table, key])?,
             Place::Property(name) => device.shell(&["getprop", name])?,
             Place::Worn => String::new(),
         };
@@ -92,10 +75,10 @@ impl HeldSetting {
     fn set(&self, device: &Device) -> Result<(), DeviceError> {
         match (&self.place, &self.value) {
             (Place::Setting(table, key), Some(value)) => {
-                device.shell(&["settings", "put", table.name(), key, value]).map(drop)
+                device.shell(&["settings", "put", table, key, value]).map(drop)
             }
             (Place::Setting(table, key), None) => {
-                device.shell(&["settings", "delete", table.name(), key]).map(drop)
+                device.shell(&["settings", "delete", table, key]).map(drop)
             }
             // Setting a property to an empty text removes it.
             (Place::Property(name), value) => {
@@ -112,7 +95,7 @@ impl HeldSetting {
     fn line(&self) -> String {
         let value = self.value.as_deref().unwrap_or(UNSET);
         match &self.place {
-            Place::Setting(table, key) => format!("{} {key} {value}\n", table.name()),
+            Place::Setting(table, key) => format!("{} {key} {value}\n", table),
             Place::Property(name) => format!("property {name} {value}\n"),
             Place::Worn => format!("headset worn {value}\n"),
         }
@@ -124,7 +107,7 @@ impl HeldSetting {
         let place = match kind {
             "property" => Place::Property(key),
             "headset" => Place::Worn,
-            kind => Place::Setting(Table::ALL.into_iter().find(|table| table.name() == kind)?, key),
+            kind => Place::Setting(TABLES.into_iter().find(|table| *table == kind)?, key),
         };
         Some(HeldSetting::new(place, value))
     }
@@ -208,25 +191,25 @@ impl HeldSettings {
 
 fn settings_to_hold(info: &DeviceInfo, wanted: &Wanted) -> Vec<HeldSetting> {
     let setting =
-        |table: Table, key: &str, value: &str| HeldSetting::new(Place::Setting(table, key.into()), value);
+        |table: &'static str, key: &str, value: &str| HeldSetting::new(Place::Setting(table, key.into()), value);
     let property = |name: &str, value: &str| HeldSetting::new(Place::Property(name.into()), value);
     let is_by = |maker: &str| info.manufacturer.eq_ignore_ascii_case(maker);
     let mut settings = vec![
-        setting(Table::System, "screen_off_timeout", SCREEN_TIMEOUT_MS),
-        setting(Table::Global, "zen_mode", ALARMS_ONLY),
+        setting("system", "screen_off_timeout", SCREEN_TIMEOUT_MS),
+        setting("global", "zen_mode", ALARMS_ONLY),
     ];
     if let Some(brightness) = wanted.brightness {
-        settings.push(setting(Table::System, "screen_brightness_mode", "0"));
-        settings.push(setting(Table::System, "screen_brightness", &brightness.to_string()));
+        settings.push(setting("system", "screen_brightness_mode", "0"));
+        settings.push(setting("system", "screen_brightness", &brightness.to_string()));
     }
     if let Some(hz) = wanted.refresh_hz {
         if is_by("samsung") {
             // Peak and minimum rate have no effect there without the mode: 0 is the standard rate, 2 the high one.
             let mode = if hz > SAMSUNG_STANDARD_HZ { "2" } else { "0" };
-            settings.push(setting(Table::Secure, "refresh_rate_mode", mode));
+            settings.push(setting("secure", "refresh_rate_mode", mode));
         }
-        settings.push(setting(Table::System, "peak_refresh_rate", &hz.to_string()));
-        settings.push(setting(Table::System, "min_refresh_rate", &hz.to_string()));
+        settings.push(setting("system", "peak_refresh_rate", &hz.to_string()));
+        settings.push(setting("system", "min_refresh_rate", &hz.to_string()));
         // This property is for headsets, but phones accept any property.
         settings.push(property(QUEST_RATE, &hz.to_string()));
     }
@@ -284,8 +267,8 @@ mod tests {
     #[test]
     fn pins_survive_writing_and_reading() {
         let settings = [
-            HeldSetting::new(Place::Setting(Table::System, "screen_brightness".into()), "120\n"),
-            HeldSetting::new(Place::Setting(Table::Secure, "refresh_rate_mode".into()), "null"),
+            HeldSetting::new(Place::Setting("system", "screen_brightness".into()), "120\n"),
+            HeldSetting::new(Place::Setting("secure", "refresh_rate_mode".into()), "null"),
             HeldSetting::new(Place::Property("debug.yoro.methods".into()), "yoro, mono"),
             HeldSetting::new(Place::Worn, "null"),
         ];

@@ -61,14 +61,14 @@ fn a_run_is_readable_at_any_time() {
     let third = Sample { time_s: 3.0, other: others(&[("later", "1")]), ..Sample::default() };
     writer.sample(&third).unwrap();
     let fault = Fault { kind: FaultKind::ClockJump, at_s: Some(2.0), detail: "by an hour".into() };
-    writer.fault(fault.clone()).unwrap();
+    writer.change(|info| info.faults.push(fault.clone())).unwrap();
     let cut = read(&folder).unwrap();
     assert_eq!(cut.samples, [first.clone(), second.clone(), third.clone()]);
     assert_eq!(cut.info.faults, [fault]);
     let done = writer.finish(Outcome::Complete).unwrap();
     assert_eq!(read(&folder).unwrap().info, done);
     assert_eq!(fs::read_to_string(folder.join(LOG_FILE)).unwrap(), "one\n");
-    assert!(matches!(Writer::create(&folder, info()), Err(CaptureError::Exists { .. })));
+    assert!(matches!(Writer::create(&folder, info()), Err(CaptureError::Occupied { .. })));
     // A last row that is incomplete is ignored.
     let path = folder.join(SAMPLES_FILE);
     let mut text = fs::read_to_string(&path).unwrap();
