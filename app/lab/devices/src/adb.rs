@@ -151,9 +151,11 @@ fn unreached(serial: &str, words: &str) -> String {
                 "is offline: plug it in again, or connect anew (adb reconnect offline, over Wi-Fi adb connect {serial})"
             )
         }
-        "no permissions" => "may not be opened by this user: install the udev rules for Android (Debian and Ubuntu: apt \
+        "no permissions" => {
+            "may not be opened by this user: install the udev rules for Android (Debian and Ubuntu: apt \
                              install android-sdk-platform-tools-common), then plug it in again"
-            .into(),
+                .into()
+        }
         words => format!(
             "is not reached by adb ({words}): connect it, unlock it, and give the same command; yoro device list shows \
              which devices are there, and adb kill-server ends a server that hangs"
@@ -392,7 +394,9 @@ impl AdbOutput {
 
     /// Returns the line in which adb itself reports an error, and not the command on the device.
     fn words_of_adb(&self) -> Option<&str> {
-        let is_own = |line: &&str| ["error: ", "adb: ", "adb.exe: ", "adb server "].iter().any(|w| line.starts_with(w));
+        let is_own = |line: &&str| {
+            ["error: ", "adb: ", "adb.exe: ", "adb server "].iter().any(|w| line.starts_with(w))
+        };
         self.stderr.lines().map(str::trim).find(is_own).filter(|_| !self.success)
     }
 }
@@ -607,7 +611,9 @@ mod tests {
         ] {
             assert!(failed(said).words_of_adb().is_some(), "{said}");
         }
-        for said in ["/system/bin/sh: nothing: not found", "cat: /sys/x: device offline", "Error: no device", ""] {
+        for said in
+            ["/system/bin/sh: nothing: not found", "cat: /sys/x: device offline", "Error: no device", ""]
+        {
             assert!(failed(said).words_of_adb().is_none(), "{said}");
         }
     }
@@ -629,7 +635,8 @@ mod tests {
         let reason = failed(stderr).reason();
         assert!(reason.starts_with("java.lang.SecurityException: Permission denial"), "{reason}");
         assert!(after_refusal("X", &reason).contains("USB debugging (Security settings)"));
-        let plain = AdbOutput { success: false, stdout: "a\n".into(), stderr: "first\nlast: word\n\n".into() };
+        let plain =
+            AdbOutput { success: false, stdout: "a\n".into(), stderr: "first\nlast: word\n\n".into() };
         assert_eq!(plain.reason(), "last: word");
     }
 }

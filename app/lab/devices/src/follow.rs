@@ -5,7 +5,6 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::time::Duration;
 
 use super::adb::{Device, DeviceError, LogEvent, LogStream, now, sleep};
-use super::capture::{Fault, FaultKind};
 use super::{log, phone};
 
 /// A log is read again from this many seconds before its last line, since simultaneous lines need not be in order.
@@ -33,16 +32,6 @@ pub enum Event {
     },
 }
 
-/// Returns the faults of a device that was gone for `seconds` after its log line at `at_s`.
-pub fn faults_of_loss(at_s: f64, seconds: f64, rebooted: bool) -> Vec<Fault> {
-    let fault = |kind, detail| Fault { kind, at_s: Some(at_s), detail };
-    let mut faults = vec![fault(FaultKind::Disconnected, format!("lost for {seconds:.0} s"))];
-    if rebooted {
-        faults.push(fault(FaultKind::Rebooted, "the device was started anew, and its log with it".into()));
-    }
-    faults
-}
-
 /// A log that is followed across lost connections.
 pub struct Follower<'a> {
     device: &'a Device,
@@ -56,11 +45,10 @@ pub struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    /// Starts to follow the log from now on, or from the oldest line that the device still has.
-    pub fn new(device: &'a Device, from_oldest: bool) -> Result<Follower<'a>, DeviceError> {
+    /// Starts to follow the log from now on.
+    pub fn new(device: &'a Device) -> Result<Follower<'a>, DeviceError> {
         let boot = phone::boot_id(device)?;
-        let since = if from_oldest { None } else { Some(phone::clock(device)?) };
-        let stream = Some(device.logcat(since.as_deref())?);
+        let stream = Some(device.logcat(Some(&phone::clock(device)?))?);
         let seen = VecDeque::with_capacity(REMEMBERED);
         Ok(Follower { device, stream, seen, overlaps: false, clock_s: None, boot, lost_at: None })
     }

@@ -77,9 +77,7 @@ impl HeldSetting {
             (Place::Setting(table, key), Some(value)) => {
                 device.shell(&["settings", "put", table, key, value]).map(drop)
             }
-            (Place::Setting(table, key), None) => {
-                device.shell(&["settings", "delete", table, key]).map(drop)
-            }
+            (Place::Setting(table, key), None) => device.shell(&["settings", "delete", table, key]).map(drop),
             // Setting a property to an empty text removes it.
             (Place::Property(name), value) => {
                 device.shell(&["setprop", name, value.as_deref().unwrap_or("")]).map(drop)
@@ -95,7 +93,7 @@ impl HeldSetting {
     fn line(&self) -> String {
         let value = self.value.as_deref().unwrap_or(UNSET);
         match &self.place {
-            Place::Setting(table, key) => format!("{} {key} {value}\n", table),
+            Place::Setting(table, key) => format!("{table} {key} {value}\n"),
             Place::Property(name) => format!("property {name} {value}\n"),
             Place::Worn => format!("headset worn {value}\n"),
         }
@@ -190,8 +188,9 @@ impl HeldSettings {
 }
 
 fn settings_to_hold(info: &DeviceInfo, wanted: &Wanted) -> Vec<HeldSetting> {
-    let setting =
-        |table: &'static str, key: &str, value: &str| HeldSetting::new(Place::Setting(table, key.into()), value);
+    let setting = |table: &'static str, key: &str, value: &str| {
+        HeldSetting::new(Place::Setting(table, key.into()), value)
+    };
     let property = |name: &str, value: &str| HeldSetting::new(Place::Property(name.into()), value);
     let is_by = |maker: &str| info.manufacturer.eq_ignore_ascii_case(maker);
     let mut settings = vec![

@@ -17,7 +17,7 @@ pub mod capture;
 pub mod experiment;
 pub mod external_app;
 pub mod farm;
-pub mod follow;
+mod follow;
 pub mod held_settings;
 mod latin_square;
 pub mod log;

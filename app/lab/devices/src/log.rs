@@ -86,7 +86,12 @@ fn thread_time(line: &str) -> Option<Entry<'_>> {
     thread.parse::<u32>().ok()?;
     let (tag, message) = rest.split_once(": ").or_else(|| Some((rest.strip_suffix(':')?, "")))?;
     let is_priority = matches!(priority, "V" | "D" | "I" | "W" | "E" | "F" | "S");
-    is_priority.then_some(Entry { time_s: Some(time_s), pid: Some(pid.parse().ok()?), tag: tag.trim(), message })
+    is_priority.then_some(Entry {
+        time_s: Some(time_s),
+        pid: Some(pid.parse().ok()?),
+        tag: tag.trim(),
+        message,
+    })
 }
 
 /// Returns the first word and the rest.

@@ -293,11 +293,3 @@ pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CaptureError> {
     }
     Ok(found)
 }
-
-/// Reads all runs in `folders` and their subfolders, in order of their paths.
-///
-/// # Errors
-/// The first error of [`find`] or [`read`].
-pub fn read_all(folders: &[PathBuf]) -> Result<Vec<Capture>, CaptureError> {
-    find(folders)?.iter().map(|folder| read(folder)).collect()
-}

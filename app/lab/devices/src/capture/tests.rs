@@ -87,7 +87,7 @@ fn a_run_is_readable_at_any_time() {
 /// Other programs read these column names and cells.
 #[test]
 fn a_sample_row_has_every_column() {
-    let line = "v=2,t=12.5s,method=yoro,pipeline=gather,scene=prototype,FPS=59.9/60,Stale=3,frame=16.68ms,p99=17.02ms,App=6.10ms(march=1.250),CPU=41.0%,RSS=212.4MB,mA_raw=-512000,mA=-512.0,mV=3921,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=33.5C,thermal=1,headroom=0.42,scale=1.00,imbuffer=na,frames=60,status=discharging,run=a";
+    let line = "v=2,t=12.5s,method=yoro,pipeline=gather,scene=prototype,FPS=59.9/60,Stale=3,frame=16.68ms,p99=17.02ms,App=6.10ms(march=1.250),CPU=41.0%,RSS=212.4MB,mA_raw=-512000,mA=-512.0,mV=3921,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=33.5C,thermal=1,headroom=0.42,scale=1.00,imbuffer=na,frames=60,status=discharging,run=a,perf=na,auto=na";
     let line: Line = line.parse().unwrap();
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path().join("run");
@@ -108,7 +108,7 @@ fn damaged_folders_are_named() {
     let sentence = |folder: &Path| read(folder).unwrap_err().to_string();
     assert!(sentence(dir.path()).contains("is no capture"));
     assert!(sentence(&dir.path().join("none")).contains("does not exist"));
-    let error = read_all(&[dir.path().into()]).unwrap_err();
+    let error = find(&[dir.path().into()]).unwrap_err();
     assert!(matches!(error, CaptureError::None { .. }), "{error}");
     let folder = dir.path().join("run");
     let mut writer = Writer::create(&folder, info()).unwrap();

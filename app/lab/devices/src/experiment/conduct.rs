@@ -123,7 +123,10 @@ impl Conductor<'_> {
                     return Err(DeviceError::Interrupted);
                 }
                 Outcome::Interrupted { reason } => {
-                    return Err(DeviceError::Unreached { serial: self.device.serial().into(), words: reason });
+                    return Err(DeviceError::Unreached {
+                        serial: self.device.serial().into(),
+                        words: reason,
+                    });
                 }
             }
         }

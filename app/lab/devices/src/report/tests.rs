@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use super::*;
-use crate::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION};
+use crate::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION};
 use yoro_report::{Basis, BlockInterval};
 
 const WARM_UP: u32 = 10;

@@ -9,7 +9,7 @@ use super::{Found, Plan, refuse_charger};
 use crate::adb::{Device, DeviceError, now, sleep};
 use crate::capture::{Fault, FaultKind, Outcome, RunInfo, Sample, Writer};
 use crate::external_app::ExternalApp;
-use crate::follow::{Event, Follower, faults_of_loss};
+use crate::follow::{Event, Follower};
 use crate::held_settings::HeldSettings;
 use crate::phone;
 use crate::reading::{LineContent, Reading};
@@ -61,7 +61,7 @@ pub(crate) fn capture(
         device,
         plan,
         bar,
-        follower: Follower::new(device, false)?,
+        follower: Follower::new(device)?,
         reading: Reading::new(subject.is_none().then(|| label.clone())),
         external_app: subject.map(|subject| ExternalApp::new(device, subject)).transpose()?,
         label,
@@ -182,8 +182,7 @@ impl Session<'_> {
                         return Ok(outcome);
                     }
                     // With other applications writing to it, the log is never quiet.
-                    let alone =
-                        self.others_since_s.is_some_and(|since| now() - since >= SILENCE_S);
+                    let alone = self.others_since_s.is_some_and(|since| now() - since >= SILENCE_S);
                     if alone && let Some(outcome) = self.quiet()? {
                         return Ok(outcome);
                     }
@@ -290,8 +289,12 @@ impl Session<'_> {
 
     fn back(&mut self, seconds: f64, rebooted: bool) -> Result<(), DeviceError> {
         (self.delay_s, self.others_since_s) = (seconds, None);
-        self.own_faults.extend(faults_of_loss(self.reading.time_s(), seconds, rebooted));
-        self.renew_faults()
+        let at_s = self.reading.time_s();
+        if rebooted {
+            let detail = "the device was started anew, and its log with it".into();
+            self.own_faults.push(Fault { kind: FaultKind::Rebooted, at_s: Some(at_s), detail });
+        }
+        self.fault(FaultKind::Disconnected, at_s, format!("lost for {seconds:.0} s"))
     }
 
     /// Decides what to do after a silence.
