@@ -67,11 +67,8 @@ fn capacity(text: &str) -> Option<f64> {
         let line = line.trim();
         let rest =
             line.strip_prefix("Estimated battery capacity:").or_else(|| line.strip_prefix("Capacity:"))?;
-        let end = rest
-            .trim_start()
-            .find(|c: char| !c.is_ascii_digit() && c != '.')
-            .unwrap_or(rest.trim_start().len());
-        rest.trim_start()[..end].parse().ok().filter(|capacity| *capacity > 0.0)
+        let number = rest.trim_start().split(|c: char| !c.is_ascii_digit() && c != '.').next()?;
+        number.parse().ok().filter(|capacity| *capacity > 0.0)
     };
     text.lines().find_map(of)
 }
