@@ -21,25 +21,9 @@ pub enum CompareError {
     /// A picture cannot be read or written.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// A file and a folder were given.
-    #[error("{} is a folder and {} is a file: give two files or two folders", folder.display(), file.display())]
-    FileAndFolder {
-        /// The folder.
-        folder: PathBuf,
-        /// The file.
-        file: PathBuf,
-    },
-    /// No file of one folder has a partner in the other.
-    #[error(
-        "{} and {} have no images of the same name: pairs are files of the same relative path",
-        a.display(), b.display()
-    )]
-    NoPairs {
-        /// The folder of the images to judge.
-        a: PathBuf,
-        /// The folder of the references.
-        b: PathBuf,
-    },
+    /// The files do not form pairs. Holds the sentence.
+    #[error("{0}")]
+    Unpaired(String),
     /// Two images cannot be compared.
     #[error("cannot compare {} with {}: {what}", a.display(), b.display())]
     Pair {
@@ -125,19 +109,13 @@ pub struct Mean {
     pub identical_pairs: usize,
 }
 
-/// The files of a pair.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PairFiles {
-    /// The path inside the folders, or the first image.
-    pub name: PathBuf,
-    /// The image to judge.
-    pub a: PathBuf,
-    /// The reference.
-    pub b: PathBuf,
-    /// The mask.
-    pub mask: Option<PathBuf>,
-    /// The file for the error map.
-    pub map: Option<PathBuf>,
+/// The files of a pair, named by the path inside the folders or the first image.
+struct PairFiles {
+    name: PathBuf,
+    a: PathBuf,
+    b: PathBuf,
+    mask: Option<PathBuf>,
+    map: Option<PathBuf>,
 }
 
 impl Inputs {
@@ -145,7 +123,7 @@ impl Inputs {
     ///
     /// # Errors
     /// [`CompareError`] if there is no pair.
-    pub fn pairs(&self) -> Result<(Vec<PairFiles>, Vec<PathBuf>), CompareError> {
+    fn pairs(&self) -> Result<(Vec<PairFiles>, Vec<PathBuf>), CompareError> {
         let Inputs { a, b, .. } = self;
         for path in [a, b] {
             if !path.exists() {
@@ -158,8 +136,13 @@ impl Inputs {
                 Ok((vec![PairFiles { name: a.clone(), a, b, mask, map }], Vec::new()))
             }
             (true, true) => self.pairs_of_folders(),
-            (true, false) => Err(CompareError::FileAndFolder { folder: a.clone(), file: b.clone() }),
-            (false, true) => Err(CompareError::FileAndFolder { folder: b.clone(), file: a.clone() }),
+            (a_is_folder, _) => {
+                let (folder, file) = if a_is_folder { (a, b) } else { (b, a) };
+                let (folder, file) = (folder.display(), file.display());
+                let what =
+                    format!("{folder} is a folder and {file} is a file: give two files or two folders");
+                Err(CompareError::Unpaired(what))
+            }
         }
     }
 
@@ -168,7 +151,11 @@ impl Inputs {
         let b = files::find(&self.b, &yoro_media::EXTENSIONS)?;
         let (names, only_a): (Vec<_>, Vec<_>) = a.into_iter().partition(|name| b.binary_search(name).is_ok());
         if names.is_empty() {
-            return Err(CompareError::NoPairs { a: self.a.clone(), b: self.b.clone() });
+            return Err(CompareError::Unpaired(format!(
+                "{} and {} have no images of the same name: pairs are files of the same relative path",
+                self.a.display(),
+                self.b.display()
+            )));
         }
         let only_b = b.into_iter().filter(|name| names.binary_search(name).is_err());
         let unmatched = only_a.into_iter().map(|name| self.a.join(name));

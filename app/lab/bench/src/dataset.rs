@@ -67,7 +67,7 @@ pub struct ImageGroup {
 impl ImageGroup {
     /// Returns the depth of the reprojected image in the pair's convention, with the far plane's value in holes.
     pub fn reprojected_depth(&self) -> DepthImage {
-        let (disparity, law) = (self.reprojected.disparity(), self.views.warp.law);
+        let (disparity, law) = (&self.reprojected.disparity, self.views.warp.law);
         let scale = law.scale.abs().max(f64::MIN_POSITIVE) as f32;
         DepthImage::from_fn(disparity.width(), disparity.height(), |x, y| {
             let nearness = (disparity.get_pixel(x, y).0[0] / scale).clamp(0.0, 1.0);

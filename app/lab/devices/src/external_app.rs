@@ -1,9 +1,7 @@
 //! Measures other applications on Meta headsets. The runtime logs their frame rates; this computer reads the battery,
 //! which nothing on the device logs.
 
-use std::collections::BTreeSet;
-
-use super::adb::{Device, DeviceError};
+use super::adb::{Device, DeviceError, now};
 use super::capture::Sample;
 use super::log::{self, Kind, VRAPI_TAG};
 use super::phone::{self, Battery};
@@ -25,33 +23,27 @@ pub struct Subject {
 }
 
 /// Finds the log lines of another application, and adds the battery's values.
-pub struct ExternalApp<'a> {
-    device: &'a dyn Device,
+pub(crate) struct ExternalApp<'a> {
+    device: &'a Device,
     subject: Subject,
     processes: Vec<u32>,
     /// Time of the last look-up.
     processes_s: f64,
-    /// Processes whose lines were ignored.
-    other_pids: BTreeSet<u32>,
     battery: Battery,
     battery_s: f64,
-    kernel_is_open: Option<bool>,
     normalizer: CurrentNormalizer,
 }
 
 impl<'a> ExternalApp<'a> {
     /// Starts to follow an application.
-    pub fn new(device: &'a dyn Device, subject: Subject) -> Result<ExternalApp<'a>, DeviceError> {
-        let mut kernel_is_open = None;
+    pub fn new(device: &'a Device, subject: Subject) -> Result<ExternalApp<'a>, DeviceError> {
         Ok(ExternalApp {
             device,
             subject,
             processes: Vec::new(),
             processes_s: f64::NEG_INFINITY,
-            other_pids: BTreeSet::new(),
-            battery: phone::battery_now(device, &mut kernel_is_open)?,
-            battery_s: device.now(),
-            kernel_is_open,
+            battery: phone::battery_now(device)?,
+            battery_s: now(),
             normalizer: CurrentNormalizer::default(),
         })
     }
@@ -63,18 +55,14 @@ impl<'a> ExternalApp<'a> {
             Kind::Mark | Kind::Damaged => return Ok(true),
         };
         let Some(pid) = entry.pid.filter(|_| entry.tag == VRAPI_TAG) else { return Ok(false) };
-        let now = self.device.now();
+        let now = now();
         if !self.processes.contains(&pid) && now - self.processes_s >= PROCESSES_PERIOD_S {
             self.processes_s = now;
             // Lines of a device that is already gone may still arrive.
             self.processes = unless_lost(phone::processes(self.device, &self.subject.process))?
                 .unwrap_or(std::mem::take(&mut self.processes));
         }
-        let is_own = self.processes.contains(&pid);
-        if !is_own {
-            self.other_pids.insert(pid);
-        }
-        Ok(is_own)
+        Ok(self.processes.contains(&pid))
     }
 
     /// Adds the battery's values to a sample, and records their faults in `reading`.
@@ -99,33 +87,13 @@ impl<'a> ExternalApp<'a> {
         sample.charge_uah = battery.charge_uah;
         sample.plugged = Some(plugged);
         sample.battery_celsius = battery.celsius.or(sample.battery_celsius);
-        let now = self.device.now();
+        let now = now();
         if now - self.battery_s >= BATTERY_PERIOD_S {
             self.battery_s = now;
-            let asked = phone::battery_now(self.device, &mut self.kernel_is_open);
+            let asked = phone::battery_now(self.device);
             self.battery = unless_lost(asked)?.unwrap_or(battery);
         }
         Ok(())
-    }
-
-    /// Returns a sentence on why no lines may have been found.
-    pub fn silence(&self) -> String {
-        let Subject { package, process } = &self.subject;
-        if self.other_pids.is_empty() {
-            return format!(
-                "Meta's runtime has logged no frame rate (tag {VRAPI_TAG}) since {package} was started"
-            );
-        }
-        let name = |pid: &u32| {
-            let name = self.device.shell(&["cat", &format!("/proc/{pid}/cmdline")]).unwrap_or_default();
-            format!("{pid} {}", name.trim_matches(['\0', '\n', ' ']))
-        };
-        let names: Vec<String> = self.other_pids.iter().map(|pid| name(pid).trim().to_owned()).collect();
-        format!(
-            "the process {process} has logged no frame rate (tag {VRAPI_TAG}), only others have ({}): where one of them \
-             is the runtime, name that process",
-            names.join(", ")
-        )
     }
 }
 

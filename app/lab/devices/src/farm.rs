@@ -247,7 +247,7 @@ mod tests {
 
     fn line(t: u32, method: &str, fps: &str) -> String {
         format!(
-            "v=2,t={t}.0s,method={method},pipeline=gather,scene=street,FPS={fps}/60,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms,CPU=na,RSS=na,mA_raw=512,mA=-512,mV=3921,level=90%,uAh=na,plug=2,Tbat=31.2C,Tskin=na,thermal=0,headroom=na,scale=1.00,imbuffer=na,frames=60,status=charging,run=loop-2-{method}"
+            "v=2,t={t}.0s,method={method},pipeline=gather,scene=street,FPS={fps}/60,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms,CPU=na,RSS=na,mA_raw=512,mA=-512,mV=3921,level=90%,uAh=na,plug=2,Tbat=31.2C,Tskin=na,thermal=0,headroom=na,scale=1.00,imbuffer=na,frames=60,status=charging,run=loop-2-{method},perf=na,auto=na"
         )
     }
 

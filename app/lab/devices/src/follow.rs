@@ -4,8 +4,7 @@ use std::collections::VecDeque;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::time::Duration;
 
-use super::adb::{Device, DeviceError, LogEvent, LogStream};
-use super::capture::{Fault, FaultKind};
+use super::adb::{Device, DeviceError, LogEvent, LogStream, now, sleep};
 use super::{log, phone};
 
 /// A log is read again from this many seconds before its last line, since simultaneous lines need not be in order.
@@ -33,20 +32,10 @@ pub enum Event {
     },
 }
 
-/// Returns the faults of a device that was gone for `seconds` after its log line at `at_s`.
-pub fn faults_of_loss(at_s: f64, seconds: f64, rebooted: bool) -> Vec<Fault> {
-    let fault = |kind, detail| Fault { kind, at_s: Some(at_s), detail };
-    let mut faults = vec![fault(FaultKind::Disconnected, format!("lost for {seconds:.0} s"))];
-    if rebooted {
-        faults.push(fault(FaultKind::Rebooted, "the device was started anew, and its log with it".into()));
-    }
-    faults
-}
-
 /// A log that is followed across lost connections.
 pub struct Follower<'a> {
-    device: &'a dyn Device,
-    stream: Option<Box<dyn LogStream>>,
+    device: &'a Device,
+    stream: Option<LogStream>,
     seen: VecDeque<u64>,
     /// True after a lost connection, when lines may repeat.
     overlaps: bool,
@@ -56,18 +45,17 @@ pub struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    /// Starts to follow the log from now on, or from the oldest line that the device still has.
-    pub fn new(device: &'a dyn Device, from_oldest: bool) -> Result<Follower<'a>, DeviceError> {
+    /// Starts to follow the log from now on.
+    pub fn new(device: &'a Device) -> Result<Follower<'a>, DeviceError> {
         let boot = phone::boot_id(device)?;
-        let since = if from_oldest { None } else { Some(phone::clock(device)?) };
-        let stream = Some(device.logcat(since.as_deref())?);
+        let stream = Some(device.logcat(Some(&phone::clock(device)?))?);
         let seen = VecDeque::with_capacity(REMEMBERED);
         Ok(Follower { device, stream, seen, overlaps: false, clock_s: None, boot, lost_at: None })
     }
 
     /// Returns the seconds since the device was lost, or `None` if it is connected.
     pub fn lost_for(&self) -> Option<f64> {
-        self.lost_at.map(|then| self.device.now() - then)
+        self.lost_at.map(|then| now() - then)
     }
 
     /// Returns the next event. Waits for `wait`, or somewhat longer if a device does not answer.
@@ -86,7 +74,7 @@ impl<'a> Follower<'a> {
                 }
                 LogEvent::Ended => {
                     self.stream = None;
-                    self.lost_at = Some(self.device.now());
+                    self.lost_at = Some(now());
                     return Ok(Event::Lost);
                 }
             }
@@ -120,7 +108,7 @@ impl<'a> Follower<'a> {
             Ok(event) => Ok(event),
             Err(error) if error.is_lost() => {
                 self.device.reconnect();
-                self.device.sleep(RETRY);
+                sleep(RETRY);
                 Ok(Event::Quiet)
             }
             Err(error) => Err(error),

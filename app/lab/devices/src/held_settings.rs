@@ -5,7 +5,7 @@
 
 use super::adb::{Device, DeviceError};
 use super::capture::DeviceInfo;
-use super::phone::{self, set_property};
+use super::phone;
 
 /// The file on the device with the values to restore.
 const FILE: &str = "/data/local/tmp/yoro-restore.txt";
@@ -32,31 +32,14 @@ pub struct Wanted {
     pub refresh_hz: Option<f64>,
 }
 
-/// A table of Android's settings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Table {
-    System,
-    Secure,
-    Global,
-}
-
-impl Table {
-    const ALL: [Table; 3] = [Table::System, Table::Secure, Table::Global];
-
-    fn name(self) -> &'static str {
-        match self {
-            Table::System => "system",
-            Table::Secure => "secure",
-            Table::Global => "global",
-        }
-    }
-}
+/// The tables of Android's settings.
+const TABLES: [&str; 3] = ["system", "secure", "global"];
 
 /// Where a value is stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Place {
     /// `settings get TABLE KEY`.
-    Setting(Table, String),
+    Setting(&'static str, String),
     /// `getprop KEY`.
     Property(String),
     /// The proximity sensor of a Meta headset, which can be overridden but not read.
@@ -80,24 +63,25 @@ impl HeldSetting {
     }
 
     /// Reads the current value.
-    fn now(device: &dyn Device, place: &Place) -> Result<HeldSetting, DeviceError> {
+    fn now(device: &Device, place: &Place) -> Result<HeldSetting, DeviceError> {
         let value = match place {
-            Place::Setting(table, key) => device.shell(&["settings", "get", table.name(), key])?,
+            Place::Setting(table, key) => device.shell(&["settings", "get", table, key])?,
             Place::Property(name) => device.shell(&["getprop", name])?,
             Place::Worn => String::new(),
         };
         Ok(HeldSetting::new(place.clone(), &value))
     }
 
-    fn set(&self, device: &dyn Device) -> Result<(), DeviceError> {
+    fn set(&self, device: &Device) -> Result<(), DeviceError> {
         match (&self.place, &self.value) {
             (Place::Setting(table, key), Some(value)) => {
-                device.shell(&["settings", "put", table.name(), key, value]).map(drop)
+                device.shell(&["settings", "put", table, key, value]).map(drop)
             }
-            (Place::Setting(table, key), None) => {
-                device.shell(&["settings", "delete", table.name(), key]).map(drop)
+            (Place::Setting(table, key), None) => device.shell(&["settings", "delete", table, key]).map(drop),
+            // Setting a property to an empty text removes it.
+            (Place::Property(name), value) => {
+                device.shell(&["setprop", name, value.as_deref().unwrap_or("")]).map(drop)
             }
-            (Place::Property(name), value) => set_property(device, name, value.as_deref().unwrap_or("")),
             (Place::Worn, value) => {
                 let word = if value.is_some() { "prox_close" } else { "automation_disable" };
                 let action = format!("com.oculus.vrpowermanager.{word}");
@@ -109,7 +93,7 @@ impl HeldSetting {
     fn line(&self) -> String {
         let value = self.value.as_deref().unwrap_or(UNSET);
         match &self.place {
-            Place::Setting(table, key) => format!("{} {key} {value}\n", table.name()),
+            Place::Setting(table, key) => format!("{table} {key} {value}\n"),
             Place::Property(name) => format!("property {name} {value}\n"),
             Place::Worn => format!("headset worn {value}\n"),
         }
@@ -121,7 +105,7 @@ impl HeldSetting {
         let place = match kind {
             "property" => Place::Property(key),
             "headset" => Place::Worn,
-            kind => Place::Setting(Table::ALL.into_iter().find(|table| table.name() == kind)?, key),
+            kind => Place::Setting(TABLES.into_iter().find(|table| *table == kind)?, key),
         };
         Some(HeldSetting::new(place, value))
     }
@@ -146,7 +130,7 @@ impl HeldSettings {
     ///
     /// # Errors
     /// [`DeviceError`]. The next call restores everything that was changed.
-    pub fn new(device: &dyn Device, info: &DeviceInfo, wanted: &Wanted) -> Result<HeldSettings, DeviceError> {
+    pub fn new(device: &Device, info: &DeviceInfo, wanted: &Wanted) -> Result<HeldSettings, DeviceError> {
         restore_leftovers(device)?;
         let mut settings = settings_to_hold(info, wanted);
         for (name, value) in phone::properties(device)? {
@@ -171,7 +155,7 @@ impl HeldSettings {
     }
 
     /// Sets all values again if the device was restarted, which resets system properties and the wear state.
-    pub fn renew(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
+    pub fn renew(&mut self, device: &Device) -> Result<(), DeviceError> {
         let boot = phone::boot_id(device)?;
         if boot == self.boot {
             return Ok(());
@@ -185,7 +169,7 @@ impl HeldSettings {
         &self.refused
     }
 
-    fn hold(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
+    fn hold(&mut self, device: &Device) -> Result<(), DeviceError> {
         self.refused.clear();
         for held in &self.wanted {
             match hold(device, held) {
@@ -198,32 +182,33 @@ impl HeldSettings {
     }
 
     /// Restores all values. If the device is gone, the next measurement on it does so.
-    pub fn restore(self, device: &dyn Device) -> Result<(), DeviceError> {
+    pub fn restore(self, device: &Device) -> Result<(), DeviceError> {
         restore(device, &self.before)
     }
 }
 
 fn settings_to_hold(info: &DeviceInfo, wanted: &Wanted) -> Vec<HeldSetting> {
-    let setting =
-        |table: Table, key: &str, value: &str| HeldSetting::new(Place::Setting(table, key.into()), value);
+    let setting = |table: &'static str, key: &str, value: &str| {
+        HeldSetting::new(Place::Setting(table, key.into()), value)
+    };
     let property = |name: &str, value: &str| HeldSetting::new(Place::Property(name.into()), value);
     let is_by = |maker: &str| info.manufacturer.eq_ignore_ascii_case(maker);
     let mut settings = vec![
-        setting(Table::System, "screen_off_timeout", SCREEN_TIMEOUT_MS),
-        setting(Table::Global, "zen_mode", ALARMS_ONLY),
+        setting("system", "screen_off_timeout", SCREEN_TIMEOUT_MS),
+        setting("global", "zen_mode", ALARMS_ONLY),
     ];
     if let Some(brightness) = wanted.brightness {
-        settings.push(setting(Table::System, "screen_brightness_mode", "0"));
-        settings.push(setting(Table::System, "screen_brightness", &brightness.to_string()));
+        settings.push(setting("system", "screen_brightness_mode", "0"));
+        settings.push(setting("system", "screen_brightness", &brightness.to_string()));
     }
     if let Some(hz) = wanted.refresh_hz {
         if is_by("samsung") {
             // Peak and minimum rate have no effect there without the mode: 0 is the standard rate, 2 the high one.
             let mode = if hz > SAMSUNG_STANDARD_HZ { "2" } else { "0" };
-            settings.push(setting(Table::Secure, "refresh_rate_mode", mode));
+            settings.push(setting("secure", "refresh_rate_mode", mode));
         }
-        settings.push(setting(Table::System, "peak_refresh_rate", &hz.to_string()));
-        settings.push(setting(Table::System, "min_refresh_rate", &hz.to_string()));
+        settings.push(setting("system", "peak_refresh_rate", &hz.to_string()));
+        settings.push(setting("system", "min_refresh_rate", &hz.to_string()));
         // This property is for headsets, but phones accept any property.
         settings.push(property(QUEST_RATE, &hz.to_string()));
     }
@@ -235,7 +220,7 @@ fn settings_to_hold(info: &DeviceInfo, wanted: &Wanted) -> Vec<HeldSetting> {
 }
 
 /// Sets a value and checks that the device has kept it.
-fn hold(device: &dyn Device, held: &HeldSetting) -> Result<(), DeviceError> {
+fn hold(device: &Device, held: &HeldSetting) -> Result<(), DeviceError> {
     held.set(device)?;
     if held.place == Place::Worn {
         return Ok(());
@@ -246,11 +231,10 @@ fn hold(device: &dyn Device, held: &HeldSetting) -> Result<(), DeviceError> {
         return Ok(());
     }
     let value = now.value.as_deref().unwrap_or(UNSET);
-    let reason = format!("it is still {value}");
-    Err(DeviceError::Refused { serial: device.serial().into(), command: held.line().trim().into(), reason })
+    Err(device.refused(held.line().trim(), format!("it is still {value}")))
 }
 
-fn restore(device: &dyn Device, before: &[HeldSetting]) -> Result<(), DeviceError> {
+fn restore(device: &Device, before: &[HeldSetting]) -> Result<(), DeviceError> {
     for held in before {
         match held.set(device) {
             Err(error) if error.is_lost() => return Err(error),
@@ -262,7 +246,7 @@ fn restore(device: &dyn Device, before: &[HeldSetting]) -> Result<(), DeviceErro
 }
 
 /// Restores the values that a killed measurement has left on the device.
-pub fn restore_leftovers(device: &dyn Device) -> Result<(), DeviceError> {
+fn restore_leftovers(device: &Device) -> Result<(), DeviceError> {
     let text = match device.shell(&["cat", FILE]) {
         Ok(text) => text,
         Err(DeviceError::Refused { .. }) => return Ok(()),
@@ -282,8 +266,8 @@ mod tests {
     #[test]
     fn pins_survive_writing_and_reading() {
         let settings = [
-            HeldSetting::new(Place::Setting(Table::System, "screen_brightness".into()), "120\n"),
-            HeldSetting::new(Place::Setting(Table::Secure, "refresh_rate_mode".into()), "null"),
+            HeldSetting::new(Place::Setting("system", "screen_brightness".into()), "120\n"),
+            HeldSetting::new(Place::Setting("secure", "refresh_rate_mode".into()), "null"),
             HeldSetting::new(Place::Property("debug.yoro.methods".into()), "yoro, mono"),
             HeldSetting::new(Place::Worn, "null"),
         ];

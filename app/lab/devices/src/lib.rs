@@ -5,25 +5,22 @@
 //! plan of a study ──> ratings (CSV, or lines of the log) ──> analysis
 //! ```
 //!
-//! The inputs are devices, plans of experiments and captures; the outputs are captures and reports. [`adb`] is the
-//! interface to devices, which [`adb_program`] implements with the program adb. [`follow`] reads a
-//! log across lost connections, [`reading`] parses its lines into samples ([`external_app`] finds the lines of other
+//! The inputs are devices, plans of experiments and captures; the outputs are captures and reports. [`adb`] reaches devices
+//! with the program adb, [`follow`] reads a log across lost connections, [`reading`] parses its lines into samples ([`external_app`] finds the lines of other
 //! applications), [`run`] captures one run, [`experiment`] many, [`farm`] reads what device farms give back, and
 //! [`report`] computes figures from them. [`study`] plans and analyses user studies.
 //!
 //! This crate must not depend on OpenGL, rendering or the command line.
 
 pub mod adb;
-pub mod adb_program;
 pub mod capture;
 pub mod experiment;
 pub mod external_app;
 pub mod farm;
-pub mod follow;
+mod follow;
 pub mod held_settings;
 mod latin_square;
 pub mod log;
-pub mod mean_power;
 pub mod phone;
 pub mod reading;
 pub mod report;

@@ -54,7 +54,7 @@ pub fn text(line: &[u8]) -> Cow<'_, str> {
 }
 
 /// Parses a line in logcat's formats `threadtime` (with the time as seconds since 1970, or as a date with or without
-/// the year), `time`, `brief` and `raw`.
+/// the year) and `raw`.
 pub fn parse(line: &str) -> Kind<'_> {
     let line = line.trim_end();
     if line.is_empty() || line.starts_with("--------- ") {
@@ -63,11 +63,7 @@ pub fn parse(line: &str) -> Kind<'_> {
     if let Some(tag) = raw_tag(line) {
         return Kind::Entry(Entry { time_s: None, pid: None, tag, message: line });
     }
-    let (time_s, rest) = match time(line) {
-        Some((time, rest)) => (Some(time), rest.trim_start()),
-        None => (None, line),
-    };
-    brief(rest, time_s).or_else(|| thread_time(rest, time_s)).map_or(Kind::Damaged, Kind::Entry)
+    thread_time(line).map_or(Kind::Damaged, Kind::Entry)
 }
 
 /// Returns the tag of a line that is a bare message.
@@ -81,28 +77,21 @@ fn raw_tag(line: &str) -> Option<&'static str> {
     }
 }
 
-/// Parses `I/YORO    ( 1234): ...`.
-fn brief(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
-    let (priority, rest) = text.split_once('/')?;
-    let (head, message) = rest.split_once("): ").or_else(|| Some((rest.strip_suffix("):")?, "")))?;
-    let (tag, pid) = head.rsplit_once('(')?;
-    is_priority(priority).then(|| Entry { time_s, pid: pid.trim().parse().ok(), tag: tag.trim(), message })
-}
-
-/// Parses ` 1234  1250 I YORO    : ...`, the part after the time.
-fn thread_time(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
-    time_s?;
+/// Parses `1700000000.123  1234  1250 I YORO    : ...`.
+fn thread_time(line: &str) -> Option<Entry<'_>> {
+    let (time_s, text) = time(line)?;
     let (pid, rest) = word(text)?;
     let (thread, rest) = word(rest)?;
     let (priority, rest) = word(rest)?;
     thread.parse::<u32>().ok()?;
     let (tag, message) = rest.split_once(": ").or_else(|| Some((rest.strip_suffix(':')?, "")))?;
-    is_priority(priority).then_some(())?;
-    Some(Entry { time_s, pid: Some(pid.parse().ok()?), tag: tag.trim(), message })
-}
-
-fn is_priority(text: &str) -> bool {
-    matches!(text, "V" | "D" | "I" | "W" | "E" | "F" | "S")
+    let is_priority = matches!(priority, "V" | "D" | "I" | "W" | "E" | "F" | "S");
+    is_priority.then_some(Entry {
+        time_s: Some(time_s),
+        pid: Some(pid.parse().ok()?),
+        tag: tag.trim(),
+        message,
+    })
 }
 
 /// Returns the first word and the rest.
@@ -116,7 +105,7 @@ fn time(line: &str) -> Option<(f64, &str)> {
     if let Ok(seconds) = first.parse::<f64>() {
         return (first.contains('.') && seconds.is_finite()).then_some((seconds, rest));
     }
-    let (clock, mut rest) = word(rest)?;
+    let (clock, rest) = word(rest)?;
     let mut date = first.split('-').map(str::parse::<u32>);
     let date = (date.next()?.ok()?, date.next()?.ok()?, date.next());
     let (year, month, day) = match date {
@@ -124,19 +113,12 @@ fn time(line: &str) -> Option<(f64, &str)> {
         // Any leap year works, since only differences matter.
         (month, day, None) => (2000, month, day),
     };
-    // Older versions print a colon after the time in the format `time`.
-    let (clock, fraction) = clock.trim_end_matches(':').split_once('.')?;
+    let (clock, fraction) = clock.split_once('.')?;
     if fraction.is_empty() || !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
     let text = format!("{year:04}-{month:02}-{day:02}T{clock}.{}Z", &fraction[..fraction.len().min(9)]);
     let seconds = humantime::parse_rfc3339(&text).ok()?;
-    // The time zone of `-v zone` does not affect differences.
-    if let Some((zone, after)) = word(rest)
-        && zone.starts_with(['+', '-'])
-    {
-        rest = after;
-    }
     Some((seconds.duration_since(std::time::UNIX_EPOCH).ok()?.as_secs_f64(), rest))
 }
 
@@ -164,10 +146,7 @@ mod tests {
             "1700000000.123456  4242  4260 I YORO    : v=2,t=1.0s",
             "1700000000.123  4242  4260 I YORO: v=2,t=1.0s",
             "11-14 22:13:20.123  4242  4260 I YORO    : v=2,t=1.0s",
-            "2023-11-14 22:13:20.123456 +0100  4242  4260 I YORO    : v=2,t=1.0s\r",
-            "11-14 22:13:20.123 I/YORO    ( 4242): v=2,t=1.0s",
-            "I/YORO    ( 4242): v=2,t=1.0s",
-            "11-14 22:13:20.123: I/YORO(4242): v=2,t=1.0s",
+            "2023-11-14 22:13:20.123456  4242  4260 I YORO    : v=2,t=1.0s\r",
             "         1700000000.123  4242  4260 I YORO    : v=2,t=1.0s",
         ] {
             assert_eq!(of(line), expected, "{line}");

@@ -1,6 +1,6 @@
 //! Commands to Android on a device, and parsers of their output.
 
-use super::adb::{Device, DeviceError, serial_number};
+use super::adb::{Device, DeviceError};
 use super::capture::DeviceInfo;
 use yoro_settings::telemetry::BatteryStatus;
 use yoro_settings::{PROPERTY_PREFIX, Settings};
@@ -15,7 +15,7 @@ const LOG_BUFFER: &str = "8M";
 /// The kernel's file about the battery. Not every shell may read it.
 const KERNEL_BATTERY: &str = "/sys/class/power_supply/battery/uevent";
 /// Minimum voltage that is taken for millivolts. Some phones give whole volts, which are too coarse for power.
-pub const LEAST_MILLIVOLTS: f64 = 100.0;
+pub(crate) const LEAST_MILLIVOLTS: f64 = 100.0;
 
 /// The battery's state as Android reports it (`dumpsys battery`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,11 +47,11 @@ impl Battery {
 }
 
 /// Returns the device's manufacturer, model, Android version and battery capacity.
-pub fn info(device: &dyn Device) -> Result<DeviceInfo, DeviceError> {
+pub fn info(device: &Device) -> Result<DeviceInfo, DeviceError> {
     let property = |name| Ok::<_, DeviceError>(device.shell(&["getprop", name])?.trim().to_owned());
     Ok(DeviceInfo {
         // The name in adb's list is not stable: a device has another address in each wireless network.
-        serial: serial_number(device)?,
+        serial: device.serial_number()?,
         manufacturer: property("ro.product.manufacturer")?,
         model: property("ro.product.model")?,
         android: property("ro.build.version.release")?,
@@ -67,17 +67,14 @@ fn capacity(text: &str) -> Option<f64> {
         let line = line.trim();
         let rest =
             line.strip_prefix("Estimated battery capacity:").or_else(|| line.strip_prefix("Capacity:"))?;
-        let end = rest
-            .trim_start()
-            .find(|c: char| !c.is_ascii_digit() && c != '.')
-            .unwrap_or(rest.trim_start().len());
-        rest.trim_start()[..end].parse().ok().filter(|capacity| *capacity > 0.0)
+        let number = rest.trim_start().split(|c: char| !c.is_ascii_digit() && c != '.').next()?;
+        number.parse().ok().filter(|capacity| *capacity > 0.0)
     };
     text.lines().find_map(of)
 }
 
 /// Returns the state of the battery.
-pub fn battery(device: &dyn Device) -> Result<Battery, DeviceError> {
+pub fn battery(device: &Device) -> Result<Battery, DeviceError> {
     Ok(read_battery(&device.shell(&["dumpsys", "battery"])?))
 }
 
@@ -105,26 +102,13 @@ fn read_battery(text: &str) -> Battery {
     battery
 }
 
-/// Returns the battery's state with the kernel's more exact values. `is_open` remembers whether they may be read.
-pub fn battery_now(device: &dyn Device, is_open: &mut Option<bool>) -> Result<Battery, DeviceError> {
+/// Returns the battery's state with the kernel's more exact current and voltage, if the shell may read them.
+pub(crate) fn battery_now(device: &Device) -> Result<Battery, DeviceError> {
     let mut battery = battery(device)?;
-    if *is_open != Some(false) {
-        let kernel = kernel_battery(device)?;
-        *is_open = Some(kernel.voltage_mv.is_some() || kernel.current_raw.is_some());
-        battery.voltage_mv = kernel.voltage_mv.or(battery.voltage_mv);
-        battery.current_raw = kernel.current_raw.or(battery.current_raw);
-    }
-    if battery.current_raw.is_none() {
-        // This command exists since Android 15.
-        let said = unless_refused(device.shell(&["cmd", "battery", "get", "-f", "current_now"]))?;
-        battery.current_raw = said.trim().parse().ok();
-    }
+    let kernel = read_kernel_battery(&unless_refused(device.shell(&["cat", KERNEL_BATTERY]))?);
+    battery.voltage_mv = kernel.voltage_mv.or(battery.voltage_mv);
+    battery.current_raw = kernel.current_raw.or(battery.current_raw);
     Ok(battery)
-}
-
-/// Returns current and voltage from the kernel, or empty values if the shell may not read them.
-pub fn kernel_battery(device: &dyn Device) -> Result<Battery, DeviceError> {
-    Ok(read_kernel_battery(&unless_refused(device.shell(&["cat", KERNEL_BATTERY]))?))
 }
 
 fn read_kernel_battery(text: &str) -> Battery {
@@ -153,13 +137,13 @@ fn unless_refused(said: Result<String, DeviceError>) -> Result<String, DeviceErr
 }
 
 /// True if the battery saver is on.
-pub fn saves_battery(device: &dyn Device) -> Result<bool, DeviceError> {
+pub(crate) fn saves_battery(device: &Device) -> Result<bool, DeviceError> {
     Ok(unless_refused(device.shell(&["settings", "get", "global", "low_power"]))?.trim() == "1")
 }
 
 /// The screen lock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Keyguard {
+pub(crate) struct Keyguard {
     /// True if it asks for a PIN, a pattern or a password.
     pub secure: bool,
     /// True if it is shown now.
@@ -167,7 +151,7 @@ pub struct Keyguard {
 }
 
 /// Returns the state of the screen lock. Both values are false if Android does not report it.
-pub fn keyguard(device: &dyn Device) -> Result<Keyguard, DeviceError> {
+pub(crate) fn keyguard(device: &Device) -> Result<Keyguard, DeviceError> {
     Ok(read_keyguard(&unless_refused(device.shell(&["dumpsys", "window", "policy"]))?))
 }
 
@@ -179,31 +163,27 @@ fn read_keyguard(text: &str) -> Keyguard {
 }
 
 /// Returns the boot id, which changes whenever the device restarts.
-pub fn boot_id(device: &dyn Device) -> Result<String, DeviceError> {
+pub(crate) fn boot_id(device: &Device) -> Result<String, DeviceError> {
     Ok(device.shell(&["cat", "/proc/sys/kernel/random/boot_id"])?.trim().to_owned())
 }
 
 /// Returns the device's clock in the format that logcat takes: seconds since 1970 with decimals.
-pub fn clock(device: &dyn Device) -> Result<String, DeviceError> {
+pub(crate) fn clock(device: &Device) -> Result<String, DeviceError> {
     let text = device.shell(&["date", "+%s.%N"])?;
     let seconds = text.trim().parse::<f64>().ok().filter(|seconds| seconds.is_finite());
-    let refused = || DeviceError::Refused {
-        serial: device.serial().into(),
-        command: "date".into(),
-        reason: format!("it says \"{}\"", text.trim()),
-    };
+    let refused = || device.refused("date", format!("it says \"{}\"", text.trim()));
     seconds.map(|seconds| format!("{seconds:.6}")).ok_or_else(refused)
 }
 
 /// Returns the version of an application, or `None` if it is not installed.
-pub fn version(device: &dyn Device, package: &str) -> Result<Option<String>, DeviceError> {
+pub fn version(device: &Device, package: &str) -> Result<Option<String>, DeviceError> {
     let text = device.shell(&["dumpsys", "package", package])?;
     let version = text.lines().find_map(|line| line.trim().strip_prefix("versionName="));
     Ok(version.map(|version| version.trim().to_owned()))
 }
 
 /// Returns the device's address in the wireless network.
-pub fn wifi_address(device: &dyn Device) -> Option<String> {
+pub(crate) fn wifi_address(device: &Device) -> Option<String> {
     let routes = device.shell(&["ip", "route"]).ok()?;
     routes.lines().filter(|line| line.contains("wlan")).find_map(|line| {
         let mut words = line.split_whitespace().skip_while(|word| *word != "src");
@@ -212,7 +192,7 @@ pub fn wifi_address(device: &dyn Device) -> Option<String> {
 }
 
 /// Returns the settings in the application's system properties, which override those given at its start.
-pub fn properties(device: &dyn Device) -> Result<Vec<(String, String)>, DeviceError> {
+pub(crate) fn properties(device: &Device) -> Result<Vec<(String, String)>, DeviceError> {
     let property = |line: &str| {
         let (name, value) = line.trim().strip_prefix('[')?.strip_suffix(']')?.split_once("]: [")?;
         (name.starts_with(PROPERTY_PREFIX) && !value.is_empty()).then(|| (name.to_owned(), value.to_owned()))
@@ -220,13 +200,8 @@ pub fn properties(device: &dyn Device) -> Result<Vec<(String, String)>, DeviceEr
     Ok(device.shell(&["getprop"])?.lines().filter_map(property).collect())
 }
 
-/// Sets a system property. Setting it to an empty text removes it.
-pub fn set_property(device: &dyn Device, name: &str, value: &str) -> Result<(), DeviceError> {
-    device.shell(&["setprop", name, value]).map(drop)
-}
-
 /// Wakes the device up, dismisses the screen lock and enlarges the log buffer. Ignores failures.
-pub fn wake(device: &dyn Device) {
+pub(crate) fn wake(device: &Device) {
     let commands: [&[&str]; 3] = [
         &["input", "keyevent", "KEYCODE_WAKEUP"],
         &["wm", "dismiss-keyguard"],
@@ -240,7 +215,7 @@ pub fn wake(device: &dyn Device) {
 }
 
 /// Restarts the application with exactly these settings. It ignores a settings file on the device.
-pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError> {
+pub(crate) fn start(device: &Device, settings: &Settings) -> Result<(), DeviceError> {
     let pairs = settings.pairs();
     let mut words = vec!["am", "start", "-S", "-W", "-n", ACTIVITY];
     for (key, value) in &pairs {
@@ -250,33 +225,26 @@ pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError
 }
 
 /// Restarts another application. `activity` may include the package.
-pub fn start_other(device: &dyn Device, package: &str, activity: &str) -> Result<(), DeviceError> {
+pub(crate) fn start_other(device: &Device, package: &str, activity: &str) -> Result<(), DeviceError> {
     let component = if activity.contains('/') { activity.into() } else { format!("{package}/{activity}") };
     start_by(device, &["am", "start", "-S", "-W", "-n", &component], &component)
 }
 
-fn start_by(device: &dyn Device, words: &[&str], component: &str) -> Result<(), DeviceError> {
+fn start_by(device: &Device, words: &[&str], component: &str) -> Result<(), DeviceError> {
     let said = device.shell(words)?;
-    if said.contains("does not exist") && component == ACTIVITY {
-        return Err(DeviceError::NotInstalled(device.serial().into()));
-    }
     match said.lines().rfind(|line| line.starts_with("Error")) {
-        Some(reason) => Err(DeviceError::Refused {
-            serial: device.serial().into(),
-            command: format!("am start -n {component}"),
-            reason: reason.trim().into(),
-        }),
+        Some(reason) => Err(device.refused(&format!("am start -n {component}"), reason.trim().into())),
         None => Ok(()),
     }
 }
 
 /// Ends an application.
-pub fn stop(device: &dyn Device, package: &str) -> Result<(), DeviceError> {
+pub(crate) fn stop(device: &Device, package: &str) -> Result<(), DeviceError> {
     device.shell(&["am", "force-stop", package]).map(drop)
 }
 
 /// Returns the process numbers of an application, empty if it does not run.
-pub fn processes(device: &dyn Device, package: &str) -> Result<Vec<u32>, DeviceError> {
+pub(crate) fn processes(device: &Device, package: &str) -> Result<Vec<u32>, DeviceError> {
     // `pidof` exits with 1 if it finds no process.
     let pids = unless_refused(device.shell(&["pidof", package]))?;
     Ok(pids.split_whitespace().filter_map(|pid| pid.parse().ok()).collect())

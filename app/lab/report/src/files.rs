@@ -24,11 +24,6 @@ impl ReportFiles {
         ReportFiles { page, markdown, json: with_json.then_some(json) }
     }
 
-    /// Returns the paths.
-    pub fn paths(&self) -> impl Iterator<Item = &PathBuf> {
-        [&self.page, &self.markdown].into_iter().chain(&self.json)
-    }
-
     /// Writes all files; the page last, since it is what people open.
     ///
     /// # Errors

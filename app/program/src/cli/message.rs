@@ -46,8 +46,8 @@ fn option(error: &anyhow::Error) -> Option<String> {
         if let Some(error) = cause.downcast_ref::<DeviceError>() {
             return match error {
                 DeviceError::NoAdb { .. } | DeviceError::Start { .. } => Some("--adb FILE".into()),
-                DeviceError::Several { .. } => Some("--serial SERIAL, --all".into()),
-                DeviceError::NotInstalled(serial) => Some(format!("--serial {}", quoted(serial))),
+                DeviceError::Several(_) => Some("--serial SERIAL, --all".into()),
+                DeviceError::NotInstalled { serial, .. } => Some(format!("--serial {}", quoted(serial))),
                 DeviceError::PluggedIn { .. } => Some("--serial SERIAL, --plugged".into()),
                 _ => None,
             };

@@ -110,7 +110,8 @@ impl PatcherKind {
 pub struct Reprojected {
     pub(super) color: RgbImage,
     pub(super) mask: GrayImage,
-    pub(super) disparity: DepthImage,
+    /// In pixels, larger for nearer surfaces and affine in inverse depth; 0 in holes, where it has no meaning.
+    pub(crate) disparity: DepthImage,
     pub(super) eye: Eye,
 }
 
@@ -177,17 +178,6 @@ impl Reprojected {
     /// Returns the mask, with [`HOLE`] and [`VALID`].
     pub fn mask(&self) -> &GrayImage {
         &self.mask
-    }
-
-    /// Returns the disparity in pixels, larger for nearer surfaces and affine in inverse depth; 0 in holes, where it
-    /// has no meaning.
-    pub fn disparity(&self) -> &DepthImage {
-        &self.disparity
-    }
-
-    /// Returns the eye that the image shows.
-    pub fn eye(&self) -> Eye {
-        self.eye
     }
 
     /// Returns the width and height in pixels.

@@ -22,10 +22,10 @@ impl Field {
     pub fn new(image: &Reprojected) -> Field {
         let [width, height] = image.size();
         let pixel = |x: u32, y: u32| {
-            let x = if image.eye() == Eye::Right { width - 1 - x } else { x };
+            let x = if image.eye == Eye::Right { width - 1 - x } else { x };
             (!image.is_hole(x, y)).then(|| Pixel {
-                color: image.color().get_pixel(x, y).0.map(f64::from),
-                disparity: f64::from(image.disparity().get_pixel(x, y).0[0]),
+                color: image.color.get_pixel(x, y).0.map(f64::from),
+                disparity: f64::from(image.disparity.get_pixel(x, y).0[0]),
             })
         };
         // Rows run from the bottom, as in GL: the paper's kernel takes the row below first.
@@ -35,7 +35,7 @@ impl Field {
 
     /// Returns the colour at a column and row of the image that the field was made from.
     pub fn color(&self, image: &Reprojected, x: u32, y: u32) -> Option<[f64; 3]> {
-        let x = if image.eye() == Eye::Right { self.width - 1 - x as i32 } else { x as i32 };
+        let x = if image.eye == Eye::Right { self.width - 1 - x as i32 } else { x as i32 };
         self.at(x, self.height - 1 - y as i32).map(|pixel| pixel.color)
     }
 

@@ -4,7 +4,6 @@
 //! Every figure is shown beside its baseline: quality beside "same image to both eyes" (which costs nothing), cost
 //! beside two full renders. The paper's figures are marked as the paper's.
 
-mod error;
 mod page;
 mod run;
 mod table;
@@ -13,14 +12,11 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use yoro_report::ReportFiles;
 use yoro_report::paper::{PAPER, PaperScene};
+use yoro_report::{ReportError, ReportFiles};
 
-pub use error::ReportError;
-pub use run::{
-    Cost, MethodCost, MethodMean, MethodView, PassTime, QUALITY_METHOD, Row, RunReport, SceneReport,
-    Viewpoint,
-};
+pub(crate) use run::{Cost, MethodCost, MethodMean, PassTime, QUALITY_METHOD, Row};
+pub use run::{MethodView, RunReport, SceneReport, Viewpoint};
 
 impl RunReport {
     /// Returns all figures as JSON, without the pictures.
@@ -48,14 +44,9 @@ impl RunReport {
         table::text(self)
     }
 
-    /// Returns the files that [`RunReport::write`] writes into `folder`.
-    pub fn files(folder: &Path) -> ReportFiles {
-        ReportFiles::of(folder, "report", true)
-    }
-
     /// Writes the page, the table and all figures into `folder`.
     pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
-        Ok(page::report(self).write(folder, "report", Some(&self.to_json()?))?)
+        page::report(self).write(folder, "report", Some(&self.to_json()?))
     }
 }
 
@@ -169,12 +160,5 @@ pub(crate) mod tests {
         assert_eq!(value["scenes"][0]["methods"][1]["passes"][2]["name"], "scatter");
         assert!(value["scenes"][0]["viewpoints"][0].get("dominant").is_none());
         assert!(json.len() < 20_000);
-    }
-
-    #[test]
-    fn files_are_written() {
-        let folder = tempfile::tempdir().unwrap();
-        let page = synthetic(24, 1).write(&folder.path().join("new")).unwrap().page;
-        assert!(page.is_file() && page.with_extension("json").is_file());
     }
 }

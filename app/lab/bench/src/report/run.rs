@@ -36,21 +36,17 @@ pub struct SceneReport {
     /// The scene's name.
     pub name: String,
     /// The paper's name of the scene that it corresponds to, or empty.
-    pub stands_for: String,
-    /// The number of triangles in the whole scene.
-    pub triangles: u64,
-    /// Two full renders.
-    pub conventional: Cost,
-    /// The methods that synthesize an eye.
-    pub methods: Vec<MethodCost>,
+    pub(crate) stands_for: String,
+    pub(crate) triangles: u64,
+    pub(crate) conventional: Cost,
+    pub(crate) methods: Vec<MethodCost>,
     /// The viewpoints, at least one, each with one view per method.
     pub viewpoints: Vec<Viewpoint>,
 }
 
 /// The cost of a stereo frame.
 #[derive(Clone, Debug, Serialize)]
-pub struct Cost {
-    /// The time of a whole stereo frame in milliseconds.
+pub(crate) struct Cost {
     pub frame_ms: Summary,
     /// The passes in the order in which they run.
     pub passes: Vec<PassTime>,
@@ -58,19 +54,16 @@ pub struct Cost {
 
 /// The time of one pass.
 #[derive(Clone, Debug, Serialize)]
-pub struct PassTime {
+pub(crate) struct PassTime {
     /// The name of the pass, as in the timers.
     pub name: String,
-    /// The median time in milliseconds.
     pub ms: f64,
 }
 
 /// The cost of a stereo frame with one method.
 #[derive(Clone, Debug, Serialize)]
-pub struct MethodCost {
-    /// The method's name.
+pub(crate) struct MethodCost {
     pub method: String,
-    /// Its cost.
     #[serde(flatten)]
     pub cost: Cost,
 }
@@ -100,7 +93,7 @@ pub struct Viewpoint {
 /// An eye made by a method.
 #[derive(Clone, Debug, Serialize)]
 pub struct MethodView {
-    /// The method's name, as in [`MethodCost`].
+    /// The method's name, as in the costs.
     pub method: String,
     /// The synthesized eye.
     #[serde(skip)]
@@ -142,14 +135,10 @@ impl Viewpoint {
 
 /// The figures of one method in one scene, as means over its viewpoints, with their baselines.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
-    /// The scene's name.
+pub(crate) struct Row {
     pub scene: String,
-    /// Its triangles.
     pub triangles: u64,
-    /// The method's name.
     pub method: String,
-    /// Quality of the synthesized eye.
     pub quality: Quality,
     /// The baseline for quality: the same image for both eyes.
     pub same_image: Quality,
@@ -157,7 +146,6 @@ pub struct Row {
     pub frame_ms: f64,
     /// The baseline for cost: the median time of two full renders in milliseconds.
     pub conventional_ms: f64,
-    /// `frame_ms / conventional_ms`.
     pub cost_ratio: f64,
     /// The paper's figures for the scene that this one corresponds to.
     pub paper: Option<&'static PaperScene>,
@@ -165,8 +153,7 @@ pub struct Row {
 
 /// The figures of one method over all scenes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct MethodMean {
-    /// The method's name.
+pub(crate) struct MethodMean {
     pub method: String,
     /// The number of scenes with results of the method.
     pub scenes: usize,
@@ -181,12 +168,12 @@ pub struct MethodMean {
 impl RunReport {
     /// Returns one row for each method in each scene, in the order of the report. A method without a view of a scene
     /// has no row for it.
-    pub fn rows(&self) -> Vec<Row> {
+    pub(crate) fn rows(&self) -> Vec<Row> {
         self.scenes.iter().flat_map(SceneReport::rows).collect()
     }
 
     /// Returns the means of the rows, with the methods in the order of first occurrence.
-    pub fn means(&self) -> Vec<MethodMean> {
+    pub(crate) fn means(&self) -> Vec<MethodMean> {
         let rows = self.rows();
         let methods = unique(rows.iter().map(|row| row.method.as_str()));
         let mean = |method: &str| {

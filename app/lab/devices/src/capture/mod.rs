@@ -52,13 +52,7 @@ pub enum CaptureError {
         /// The folders, separated by commas.
         folders: String,
     },
-    /// The folder already holds a run.
-    #[error("{} holds a run already: name another folder", folder.display())]
-    Exists {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// A file that is not the capture's has the name of one of its files.
+    /// The folder already holds a run, or a file with the name of one of the capture's.
     #[error("{} is there already, and the capture would replace it: name another folder", path.display())]
     Occupied {
         /// The file.
@@ -75,25 +69,12 @@ pub enum CaptureError {
         /// The version in it.
         version: u64,
     },
-    /// `run.json` is damaged.
+    /// A file of the capture is damaged.
     #[error("{} is damaged ({what}): leave the run out, or measure it again", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
         /// The mistake in it.
-        what: String,
-    },
-    /// A row of `samples.csv` is damaged.
-    #[error(
-        "{}, line {line}: {what}; remove the line, or make the samples anew from the log beside it by yoro device logcat",
-        path.display()
-    )]
-    Row {
-        /// The file.
-        path: PathBuf,
-        /// The line, counted from 1.
-        line: u64,
-        /// The mistake.
         what: String,
     },
 }
@@ -162,14 +143,35 @@ pub enum FaultKind {
     TooWarm,
     /// The device gives the voltage in whole volts.
     VoltageInVolts,
-    /// The power is outside the plausible range, so its current or voltage is wrong.
-    ImplausiblePower,
     /// The device refused to hold a value fixed.
     NotPinned,
     /// The display did not keep the requested refresh rate.
     RefreshRate,
     /// The device's pictures differ from the stored ones, or its driver cannot make them.
     Pictures,
+}
+
+impl FaultKind {
+    /// Returns the name in tables.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            FaultKind::Disconnected => "disconnected",
+            FaultKind::PluggedIn => "plugged in",
+            FaultKind::NoCurrent => "no current",
+            FaultKind::CurrentInMilliamperes => "current in mA",
+            FaultKind::CurrentSign => "sign of the current",
+            FaultKind::ClockJump => "clock jump",
+            FaultKind::DamagedLines => "damaged lines",
+            FaultKind::MissingLines => "missing lines",
+            FaultKind::Rebooted => "rebooted",
+            FaultKind::Restarted => "application restarted",
+            FaultKind::TooWarm => "too warm",
+            FaultKind::VoltageInVolts => "voltage in V",
+            FaultKind::NotPinned => "not pinned",
+            FaultKind::RefreshRate => "refresh rate",
+            FaultKind::Pictures => "pictures",
+        }
+    }
 }
 
 /// Something that went wrong in a run.
@@ -238,7 +240,10 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     let mut samples = Vec::new();
     if whole > 0 {
         let mut table = csv::Reader::from_reader(&bytes[..whole]);
-        let damaged = |(line, what)| CaptureError::Row { path: path.clone(), line, what };
+        let damaged = |(line, what): (u64, String)| CaptureError::Damaged {
+            path: path.clone(),
+            what: format!("line {line}: {what}"),
+        };
         let header = table.headers().map_err(|error| damaged(csv_mistake(&error)))?.clone();
         for row in table.records() {
             let row = row.map_err(|error| damaged(csv_mistake(&error)))?;
@@ -287,12 +292,4 @@ pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CaptureError> {
         return Err(CaptureError::None { folders: names.join(", ") });
     }
     Ok(found)
-}
-
-/// Reads all runs in `folders` and their subfolders, in order of their paths.
-///
-/// # Errors
-/// The first error of [`find`] or [`read`].
-pub fn read_all(folders: &[PathBuf]) -> Result<Vec<Capture>, CaptureError> {
-    find(folders)?.iter().map(|folder| read(folder)).collect()
 }

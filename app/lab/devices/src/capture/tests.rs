@@ -61,14 +61,14 @@ fn a_run_is_readable_at_any_time() {
     let third = Sample { time_s: 3.0, other: others(&[("later", "1")]), ..Sample::default() };
     writer.sample(&third).unwrap();
     let fault = Fault { kind: FaultKind::ClockJump, at_s: Some(2.0), detail: "by an hour".into() };
-    writer.fault(fault.clone()).unwrap();
+    writer.change(|info| info.faults.push(fault.clone())).unwrap();
     let cut = read(&folder).unwrap();
     assert_eq!(cut.samples, [first.clone(), second.clone(), third.clone()]);
     assert_eq!(cut.info.faults, [fault]);
     let done = writer.finish(Outcome::Complete).unwrap();
     assert_eq!(read(&folder).unwrap().info, done);
     assert_eq!(fs::read_to_string(folder.join(LOG_FILE)).unwrap(), "one\n");
-    assert!(matches!(Writer::create(&folder, info()), Err(CaptureError::Exists { .. })));
+    assert!(matches!(Writer::create(&folder, info()), Err(CaptureError::Occupied { .. })));
     // A last row that is incomplete is ignored.
     let path = folder.join(SAMPLES_FILE);
     let mut text = fs::read_to_string(&path).unwrap();
@@ -87,7 +87,7 @@ fn a_run_is_readable_at_any_time() {
 /// Other programs read these column names and cells.
 #[test]
 fn a_sample_row_has_every_column() {
-    let line = "v=2,t=12.5s,method=yoro,pipeline=gather,scene=prototype,FPS=59.9/60,Stale=3,frame=16.68ms,p99=17.02ms,App=6.10ms(march=1.250),CPU=41.0%,RSS=212.4MB,mA_raw=-512000,mA=-512.0,mV=3921,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=33.5C,thermal=1,headroom=0.42,scale=1.00,imbuffer=na,frames=60,status=discharging,run=a";
+    let line = "v=2,t=12.5s,method=yoro,pipeline=gather,scene=prototype,FPS=59.9/60,Stale=3,frame=16.68ms,p99=17.02ms,App=6.10ms(march=1.250),CPU=41.0%,RSS=212.4MB,mA_raw=-512000,mA=-512.0,mV=3921,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=33.5C,thermal=1,headroom=0.42,scale=1.00,imbuffer=na,frames=60,status=discharging,run=a,perf=na,auto=na";
     let line: Line = line.parse().unwrap();
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path().join("run");
@@ -108,7 +108,7 @@ fn damaged_folders_are_named() {
     let sentence = |folder: &Path| read(folder).unwrap_err().to_string();
     assert!(sentence(dir.path()).contains("is no capture"));
     assert!(sentence(&dir.path().join("none")).contains("does not exist"));
-    let error = read_all(&[dir.path().into()]).unwrap_err();
+    let error = find(&[dir.path().into()]).unwrap_err();
     assert!(matches!(error, CaptureError::None { .. }), "{error}");
     let folder = dir.path().join("run");
     let mut writer = Writer::create(&folder, info()).unwrap();

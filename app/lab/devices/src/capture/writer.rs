@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::{CaptureError, Fault, LOG_FILE, Outcome, RUN_FILE, RunInfo, SAMPLES_FILE, Sample};
+use super::{CaptureError, LOG_FILE, Outcome, RUN_FILE, RunInfo, SAMPLES_FILE, Sample};
 use yoro_files::{self as files, FileError};
 
 /// Writes a capture during a run.
@@ -25,9 +25,6 @@ impl Writer {
     /// [`CaptureError`], also if the folder already holds a run or a file with the name of one of the capture's files.
     pub fn create(folder: &Path, info: RunInfo) -> Result<Writer, CaptureError> {
         files::create_folder(folder)?;
-        if folder.join(RUN_FILE).exists() {
-            return Err(CaptureError::Exists { folder: folder.into() });
-        }
         let mut created = Vec::new();
         let begun = Writer::begin(folder, info, &mut created);
         if begun.is_err() {
@@ -89,12 +86,6 @@ impl Writer {
             self.widen(before)?;
         }
         self.append(&self.samples, SAMPLES_FILE, sample.row(&self.others).as_bytes())
-    }
-
-    /// Adds a fault to the description.
-    pub fn fault(&mut self, fault: Fault) -> Result<(), CaptureError> {
-        self.info.faults.push(fault);
-        self.renew()
     }
 
     /// Ends the capture with an outcome.

@@ -8,7 +8,7 @@ use std::time::Duration;
 use indicatif::ProgressBar;
 
 use super::{Experiment, WhenTooWarm, file_name, length};
-use crate::adb::{Device, DeviceError};
+use crate::adb::{Device, DeviceError, now, sleep};
 use crate::capture::{self, CaptureError, Fault, FaultKind, Outcome, RUN_FILE, RunInfo, Writer};
 use crate::held_settings::{HeldSettings, Wanted};
 use crate::phone::{self, Battery};
@@ -50,7 +50,7 @@ impl fmt::Display for Progress {
 /// # Errors
 /// [`DeviceError`]. A later call continues where this one stopped.
 pub fn conduct(
-    device: &dyn Device,
+    device: &Device,
     experiment: &Experiment,
     out: &Path,
     bar: &ProgressBar,
@@ -58,7 +58,7 @@ pub fn conduct(
     let found = run::look(device, phone::PACKAGE)?;
     // Even if the device is unlocked now, a restart would lock it again with nobody there to unlock it.
     if phone::keyguard(device)?.secure {
-        return Err(DeviceError::Locked(device.serial().into()));
+        return Err(run::locked(device));
     }
     if experiment.power {
         run::refuse_charger(device)?;
@@ -81,7 +81,7 @@ pub fn conduct(
 }
 
 struct Conductor<'a> {
-    device: &'a dyn Device,
+    device: &'a Device,
     experiment: &'a Experiment,
     found: &'a Found,
     held: &'a mut HeldSettings,
@@ -122,8 +122,11 @@ impl Conductor<'_> {
                 Outcome::Interrupted { .. } if interrupt::requested() => {
                     return Err(DeviceError::Interrupted);
                 }
-                Outcome::Interrupted { .. } => {
-                    return Err(DeviceError::Lost(self.device.serial().into()));
+                Outcome::Interrupted { reason } => {
+                    return Err(DeviceError::Unreached {
+                        serial: self.device.serial().into(),
+                        words: reason,
+                    });
                 }
             }
         }
@@ -139,19 +142,15 @@ impl Conductor<'_> {
                 WhenTooWarm::Start => {}
                 WhenTooWarm::Skip => return self.leave_out(plan, folder, celsius, wanted),
                 WhenTooWarm::Stop => {
-                    let serial = self.device.serial().into();
-                    return Err(DeviceError::TooWarm { serial, celsius, wanted });
+                    return Err(DeviceError::Unfit(format!(
+                        "{} has {celsius:.1} C and does not cool down to {wanted:.1} C: let it rest in a cooler place, \
+                         then give the same command",
+                        self.device.serial()
+                    )));
                 }
             }
         }
-        let mut made = run::capture(self.device, self.found, plan, self.held, folder, self.bar);
-        if made.as_ref().is_err_and(DeviceError::is_lost) && !interrupt::requested() {
-            // The device was lost before its log could be followed. Wait once, as between runs, and try again.
-            set_aside(folder)?;
-            self.cool_down(plan)?;
-            made = run::capture(self.device, self.found, plan, self.held, folder, self.bar);
-        }
-        match made {
+        match run::capture(self.device, self.found, plan, self.held, folder, self.bar) {
             // The capture names the reason, and other runs may succeed.
             Err(DeviceError::Refused { .. }) if folder.join(RUN_FILE).exists() => {
                 Ok(capture::read_info(folder)?)
@@ -162,7 +161,7 @@ impl Conductor<'_> {
 
     /// Waits for the pause, the charge and the temperature. Returns the temperature if it is still too high.
     fn cool_down(&self, plan: &Plan) -> Result<Option<f64>, DeviceError> {
-        let mut begin = self.device.now();
+        let mut begin = now();
         let mut lost_at = None;
         let mut charging = None;
         let wanted = self.experiment.cool_down;
@@ -170,18 +169,18 @@ impl Conductor<'_> {
             if interrupt::requested() {
                 return Err(DeviceError::Interrupted);
             }
-            let waited = self.device.now() - begin;
+            let waited = now() - begin;
             let asked = phone::stop(self.device, plan.package()).and_then(|()| phone::battery(self.device));
             let battery = match asked {
                 Ok(battery) => battery,
                 Err(error) if error.is_lost() => {
-                    let lost_at = *lost_at.get_or_insert(self.device.now());
-                    if self.device.now() - lost_at > LOST_TIMEOUT_S {
+                    let lost_at = *lost_at.get_or_insert(now());
+                    if now() - lost_at > LOST_TIMEOUT_S {
                         return Err(error);
                     }
                     self.bar.set_message("lost: connect it again");
                     self.device.reconnect();
-                    self.device.sleep(COOLING);
+                    sleep(COOLING);
                     continue;
                 }
                 Err(error) => return Err(error),
@@ -189,8 +188,8 @@ impl Conductor<'_> {
             lost_at = None;
             if self.experiment.power && self.must_charge(&battery, &mut charging)? {
                 // Charging warms the battery, so the time to cool down starts when charging ends.
-                begin = self.device.now();
-                self.device.sleep(COOLING);
+                begin = now();
+                sleep(COOLING);
                 continue;
             }
             let celsius = battery.celsius.filter(|celsius| wanted.is_some_and(|w| *celsius > w.celsius));
@@ -206,7 +205,7 @@ impl Conductor<'_> {
                 )),
                 _ => self.bar.set_message("resting"),
             }
-            self.device.sleep(COOLING);
+            sleep(COOLING);
         }
     }
 
@@ -254,7 +253,7 @@ impl Conductor<'_> {
     ) -> Result<RunInfo, DeviceError> {
         let reason = format!("the battery had {celsius:.1} C and did not cool down to {wanted:.1} C in time");
         let fault = Fault { kind: FaultKind::TooWarm, at_s: Some(0.0), detail: reason.clone() };
-        let mut info = plan.info(self.found, self.device.now(), Some(celsius));
+        let mut info = plan.info(self.found, now(), Some(celsius));
         info.faults.push(fault);
         Ok(Writer::create(folder, info)?.finish(Outcome::Failed { reason })?)
     }

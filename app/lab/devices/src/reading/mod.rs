@@ -126,11 +126,6 @@ impl Reading {
         self.damaged.times
     }
 
-    /// True if the device gave the voltage in whole volts, which samples leave out.
-    pub fn has_whole_volts(&self) -> bool {
-        self.volts.times > 0
-    }
-
     /// Returns the methods and scenes in the log, in order of their first lines.
     pub fn methods(&self) -> &[(String, String)] {
         &self.methods

@@ -135,7 +135,7 @@ fn lines_of_metas_runtime_are_parsed() {
         "11-12 18:46:10.350  3579  3669 I VrApi   : FPS=36/72,Prd=39ms,Stale=0,Temp=44.5C/0.0C,App=11.42ms,LCnt=1",
         "11-12 18:46:10.351  3579  3669 I VrApi   : ASW=72, Type=App E=-0.000/0.250,D=0.000/0.000",
         "11-12 18:46:10.400  2072  2090 I XrPerformanceManager: SetClockLevels: Apply pending clock request change: 4,3 -> 3,3",
-        "11-12 18:46:10.500: I/VrApi(24826): SetVrSystemPerformance( 2, 2 )",
+        "11-12 18:46:10.500 24826 24826 I VrApi   : SetVrSystemPerformance( 2, 2 )",
     ] {
         if let LineContent::Sample(sample) = reading.line(text, None) {
             seconds.push(*sample);

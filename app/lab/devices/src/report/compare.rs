@@ -11,15 +11,10 @@ use yoro_report::{Basis, BlockInterval, Interval, Sample, mean_of_blocks};
 /// The mean of a method in a scene over all runs that count.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mean {
-    /// Device.
     pub device: String,
-    /// Scene.
     pub scene: String,
-    /// Method.
     pub method: String,
-    /// Quantity.
     pub quantity: Quantity,
-    /// Mean, standard deviation and number of the runs.
     #[serde(flatten)]
     pub sample: Sample,
     /// Confidence interval of the mean, by Student's t over the repetitions. `None` for a single run.
@@ -33,28 +28,17 @@ pub struct Difference {
     pub device: Option<String>,
     /// Scene, or `None` for the mean of all scenes.
     pub scene: Option<String>,
-    /// Method.
     pub method: String,
-    /// Quantity.
     pub quantity: Quantity,
-    /// Number of pairs.
     pub pairs: usize,
     /// Mean of the method over the pairs of each scene, then over the scenes.
     pub ours: f64,
-    /// Mean of the baseline, computed likewise.
     pub baseline: f64,
     /// Change in percent, from the geometric mean of the pairs' ratios. For quantities that are not compared by ratios,
     /// the mean difference in the quantity's unit.
     pub change: f64,
     /// Confidence interval of the change. `None` if nothing was repeated.
     pub interval: Option<BlockInterval>,
-}
-
-impl Difference {
-    /// True if `change` is in percent.
-    pub fn in_percent(&self) -> bool {
-        self.quantity.is_ratio()
-    }
 }
 
 /// Returns the means of all methods and scenes on a device.

@@ -17,68 +17,55 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::capture::{Capture, FaultKind};
-use super::mean_power::implausible;
-pub use compare::{Difference, Mean};
-pub use run::{ByLevel, Counted, Exclusion, Integrated, Quantity, Run};
+use super::capture::Capture;
+use compare::{Difference, Mean};
+use run::{Integrated, Quantity, Run};
 use yoro_report::{CONFIDENCE, Report, ReportError, ReportFiles};
 use yoro_scenes::BUILTINS;
 
 /// A device that was measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Device {
+struct Device {
     /// Name in tables. Ends in `(simulated)` for a simulated device.
-    pub name: String,
-    /// Version of Android.
-    pub android: String,
-    /// Capacity of the battery in milliampere-hours.
-    pub capacity_mah: Option<f64>,
+    name: String,
+    android: String,
+    capacity_mah: Option<f64>,
     /// Number of battery cells, if the device reports the current of one cell; otherwise 1.
-    pub cells: u32,
-    /// True for a simulated device.
-    pub simulated: bool,
-    /// Versions of the application in the runs.
-    pub applications: BTreeSet<String>,
-    /// Scenes, in the order of tables.
-    pub scenes: Vec<String>,
+    cells: u32,
+    simulated: bool,
+    applications: BTreeSet<String>,
+    scenes: Vec<String>,
     /// Methods in the order of tables: the baseline, then this project's.
-    pub methods: Vec<String>,
+    methods: Vec<String>,
 }
 
 /// Something that readers of the figures must know.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Note {
-    /// A short name.
-    pub name: &'static str,
+pub(crate) struct Note {
+    pub(crate) name: &'static str,
     /// The run or other subject that it is about.
-    pub of: String,
-    /// One sentence.
-    pub detail: String,
+    of: String,
+    detail: String,
 }
 
 /// The figures of several captures.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceReport {
     /// True if any of the runs was simulated rather than measured.
-    pub simulated: bool,
+    simulated: bool,
     /// The method that the others are compared with.
-    pub baseline: String,
-    /// Confidence level of the intervals.
-    pub confidence: f64,
+    baseline: String,
+    confidence: f64,
     /// Program, version and command that made the report.
-    pub made_by: String,
-    /// All devices.
-    pub devices: Vec<Device>,
-    /// Comparisons of the methods with the baseline.
-    pub differences: Vec<Difference>,
-    /// Means by device, scene and method.
-    pub means: Vec<Mean>,
+    made_by: String,
+    devices: Vec<Device>,
+    differences: Vec<Difference>,
+    means: Vec<Mean>,
     /// Excluded runs, with the reasons.
-    pub left_out: Vec<Note>,
+    pub(crate) left_out: Vec<Note>,
     /// Faults that did not exclude a run.
-    pub faults: Vec<Note>,
-    /// The figures of all runs.
-    pub runs: Vec<Run>,
+    faults: Vec<Note>,
+    runs: Vec<Run>,
 }
 
 impl DeviceReport {
@@ -147,8 +134,7 @@ impl DeviceReport {
         report
     }
 
-    /// Returns the report as readers see it.
-    pub fn report(&self) -> Report {
+    fn report(&self) -> Report {
         page::report(self)
     }
 
@@ -303,7 +289,7 @@ fn faults(runs: &[Run]) -> Vec<Note> {
         for fault in &run.faults {
             let at = fault.at_s.map(|at| format!(" (at {at:.0} s)")).unwrap_or_default();
             let detail = format!("{}{at}", fault.detail);
-            notes.push(Note { name: fault_name(fault.kind), of: run.name(), detail });
+            notes.push(Note { name: fault.kind.name(), of: run.name(), detail });
         }
         if run.gaps > 0 {
             let gaps = page::count(run.gaps, "gap");
@@ -311,11 +297,13 @@ fn faults(runs: &[Run]) -> Vec<Note> {
             notes.push(Note { name: "gaps", of: run.name(), detail });
         }
         let mut note = |name, detail| notes.push(Note { name, of: run.name(), detail });
-        let is_reported = run.faults.iter().any(|fault| fault.kind == FaultKind::ImplausiblePower);
-        if let Some(detail) =
-            run.integrated.filter(|_| !is_reported).and_then(|found| implausible(found.milliwatts))
-        {
-            note(fault_name(FaultKind::ImplausiblePower), detail);
+        if let Some(found) = run.integrated.filter(Integrated::is_implausible) {
+            let detail = format!(
+                "a mean power of {:.1} mW is implausible (below 100 mW or above 30 W): the unit of the battery's current \
+                 or voltage is another one",
+                found.milliwatts
+            );
+            note("implausible power", detail);
         }
         let counted = run.counted.filter(|_| run.counts(Quantity::Power));
         if counted.is_some_and(|counted| counted.scale >= run::MILLI) {
@@ -340,26 +328,4 @@ fn faults(runs: &[Run]) -> Vec<Note> {
         }
     }
     notes
-}
-
-/// Returns the name of a fault in tables.
-fn fault_name(kind: FaultKind) -> &'static str {
-    match kind {
-        FaultKind::Disconnected => "disconnected",
-        FaultKind::PluggedIn => "plugged in",
-        FaultKind::NoCurrent => "no current",
-        FaultKind::CurrentInMilliamperes => "current in mA",
-        FaultKind::CurrentSign => "sign of the current",
-        FaultKind::ClockJump => "clock jump",
-        FaultKind::DamagedLines => "damaged lines",
-        FaultKind::MissingLines => "missing lines",
-        FaultKind::Rebooted => "rebooted",
-        FaultKind::Restarted => "application restarted",
-        FaultKind::TooWarm => "too warm",
-        FaultKind::VoltageInVolts => "voltage in V",
-        FaultKind::ImplausiblePower => "implausible power",
-        FaultKind::NotPinned => "not pinned",
-        FaultKind::RefreshRate => "refresh rate",
-        FaultKind::Pictures => "pictures",
-    }
 }

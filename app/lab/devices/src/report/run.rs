@@ -30,42 +30,25 @@ const GAP: f64 = 2.5;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
-    /// Mean power taken from the battery.
     Power,
-    /// Frames per second.
     Fps,
-    /// Mean time between frames.
     FrameTime,
     /// 99th percentile of the times between frames, mean over the seconds.
     FrameTimeP99,
-    /// GPU time per frame.
     GpuTime,
-    /// Refreshes that repeated an old frame.
     Stale,
-    /// Battery temperature.
     Temperature,
-    /// Rise of the battery's temperature.
     Rise,
-    /// CPU load of the process.
     Cpu,
-    /// Resident memory.
     Memory,
 }
 
 impl Quantity {
     /// All quantities in the order of tables.
-    pub const ALL: [Quantity; 10] = [
-        Quantity::Power,
-        Quantity::Fps,
-        Quantity::FrameTime,
-        Quantity::FrameTimeP99,
-        Quantity::GpuTime,
-        Quantity::Stale,
-        Quantity::Temperature,
-        Quantity::Rise,
-        Quantity::Cpu,
-        Quantity::Memory,
-    ];
+    pub const ALL: [Quantity; 10] = {
+        use Quantity::*;
+        [Power, Fps, FrameTime, FrameTimeP99, GpuTime, Stale, Temperature, Rise, Cpu, Memory]
+    };
 
     /// Returns name and unit in tables, number of decimals, and whether two values are compared by their ratio.
     fn row(self) -> (&'static str, &'static str, usize, bool) {
@@ -108,10 +91,15 @@ impl Quantity {
 /// Power integrated from current x voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Integrated {
-    /// Mean power in milliwatts.
     pub milliwatts: f64,
-    /// Integrated time in seconds.
     pub seconds: f64,
+}
+
+impl Integrated {
+    /// True if no phone or headset that renders takes this power. Charging, up to 0, is excluded elsewhere.
+    pub fn is_implausible(&self) -> bool {
+        self.milliwatts > 0.0 && !(100.0..=30_000.0).contains(&self.milliwatts)
+    }
 }
 
 /// Power from the battery's charge counter.
@@ -119,12 +107,9 @@ pub struct Integrated {
 pub struct Counted {
     /// Change of charge x mean voltage / time between the counter's first and last step, in milliwatts.
     pub milliwatts: f64,
-    /// Current x voltage over the same time, in milliwatts.
     pub integrated_milliwatts: f64,
     /// Time between the counter's first and last step in seconds.
     pub seconds: f64,
-    /// Number of steps of the counter.
-    pub steps: usize,
     /// Factor from the counter's values to microampere-hours of the whole battery.
     pub scale: f64,
 }
@@ -139,7 +124,6 @@ impl Counted {
 /// Power by the paper's method: battery percent x capacity x 3.7 V.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ByLevel {
-    /// Mean power in milliwatts.
     pub milliwatts: f64,
     /// The method's resolution: the power, in milliwatts, that uses one percent of the battery in this time.
     pub step_milliwatts: f64,
@@ -150,64 +134,42 @@ pub struct ByLevel {
 pub struct Exclusion {
     /// True if only the run's power is excluded, false if the whole run is.
     pub power_only: bool,
-    /// A short name.
     pub name: &'static str,
-    /// One sentence.
     pub reason: String,
 }
 
-/// Values over time for plots, as pairs of time and value.
+/// Values over time for plots, as pairs of seconds and value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Traces {
-    /// Time in seconds, and power in milliwatts.
     pub power: Vec<(f64, f64)>,
-    /// Time in seconds, and frames per second.
     pub fps: Vec<(f64, f64)>,
-    /// Time in seconds, and temperature in degrees Celsius.
     pub temperature: Vec<(f64, f64)>,
 }
 
 /// The figures of one run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Run {
-    /// Folder of the run.
     pub folder: String,
     /// Index of the given folder that contains the run. The same repetition in another folder counts as a further one.
     pub set: usize,
     /// The device's name in tables.
     pub device: String,
-    /// True for a simulated device.
     pub simulated: bool,
-    /// Experiment.
     pub experiment: Option<String>,
-    /// Method.
     pub method: String,
-    /// Scene.
     pub scene: String,
-    /// Repetition, from 1.
     pub repetition: u32,
-    /// Start in seconds since 1970.
     pub started_unix_s: f64,
     /// Factor on current x voltage: the number of battery cells if the device reports the current of one, otherwise 1.
     pub cells: u32,
-    /// Planned length without warm-up, in seconds.
     pub planned_s: f64,
     /// Time in seconds for which samples are close enough to each other.
     pub covered_s: f64,
-    /// Number of gaps between samples, which were not bridged.
     pub gaps: usize,
-    /// Means over the run.
     pub values: BTreeMap<Quantity, f64>,
-    /// Standard deviation over the run's seconds, for quantities with a value per second. Seconds are not independent,
-    /// so no interval is computed from it.
-    pub std_over_seconds: BTreeMap<Quantity, f64>,
-    /// Power from current x voltage.
     pub integrated: Option<Integrated>,
-    /// Power from the charge counter.
     pub counted: Option<Counted>,
-    /// Power by the paper's method.
     pub by_level: Option<ByLevel>,
-    /// The faults that occurred.
     pub faults: Vec<Fault>,
     /// Reasons for which the run, or only its power, is excluded.
     pub exclusions: Vec<Exclusion>,
@@ -251,7 +213,6 @@ impl Run {
             covered_s,
             gaps,
             values: BTreeMap::new(),
-            std_over_seconds: BTreeMap::new(),
             integrated,
             counted: count(&charge, &series(voltage), &power, longest_step)
                 .map(|counted| Counted { scale, ..counted }),
@@ -270,28 +231,23 @@ impl Run {
             run.exclusions.push(Exclusion { power_only: true, name, reason });
         }
         if run.counts(Quantity::Power) {
-            run.set(Quantity::Power, &power, integrated.map(|i| i.milliwatts));
+            run.values.extend(integrated.map(|i| (Quantity::Power, i.milliwatts)));
         }
         if !run.counts(Quantity::Fps) {
             return run;
         }
-        run.set(Quantity::Fps, &fps, mean(&fps));
-        // Weighted by frames, since a second of slow frames has fewer of them.
-        for (quantity, value) in [
-            (Quantity::FrameTime, (|s: &Sample| s.frame_ms) as fn(&Sample) -> Option<f64>),
-            (Quantity::GpuTime, |s| s.gpu_ms),
-        ] {
-            run.set(quantity, &series(value), mean_over_frames(&samples, value));
-        }
-        for (quantity, values) in [
-            (Quantity::FrameTimeP99, series(|s| s.p99_ms)),
-            (Quantity::Stale, series(|s| s.stale)),
-            (Quantity::Temperature, temperature.clone()),
-            (Quantity::Cpu, series(|s| s.cpu_percent)),
-            (Quantity::Memory, series(|s| s.rss_mb)),
-        ] {
-            run.set(quantity, &values, mean(&values));
-        }
+        // Frame and GPU times are weighted by frames, since a second of slow frames has fewer of them.
+        let values = [
+            (Quantity::Fps, mean(&fps)),
+            (Quantity::FrameTime, mean_over_frames(&samples, |s| s.frame_ms)),
+            (Quantity::GpuTime, mean_over_frames(&samples, |s| s.gpu_ms)),
+            (Quantity::FrameTimeP99, mean(&series(|s| s.p99_ms))),
+            (Quantity::Stale, mean(&series(|s| s.stale))),
+            (Quantity::Temperature, mean(&temperature)),
+            (Quantity::Cpu, mean(&series(|s| s.cpu_percent))),
+            (Quantity::Memory, mean(&series(|s| s.rss_mb))),
+        ];
+        run.values.extend(values.into_iter().filter_map(|(quantity, value)| Some((quantity, value?))));
         if let (Some(first), Some(last)) = (temperature.first(), temperature.last()) {
             run.values.insert(Quantity::Rise, last.1 - first.1);
         }
@@ -327,15 +283,6 @@ impl Run {
     pub(super) fn leave_out(&mut self, name: &'static str, reason: String) {
         self.exclusions.push(Exclusion { power_only: false, name, reason });
         self.values.clear();
-        self.std_over_seconds.clear();
-    }
-
-    fn set(&mut self, quantity: Quantity, seconds: &[(f64, f64)], value: Option<f64>) {
-        let Some(value) = value else { return };
-        self.values.insert(quantity, value);
-        let values: Vec<f64> = seconds.iter().map(|(_, value)| *value).collect();
-        let std = yoro_report::stats::Summary::of(&values).map(|summary| summary.std);
-        self.std_over_seconds.extend(std.map(|std| (quantity, std)));
     }
 
     fn find(&self, kind: FaultKind) -> Option<&Fault> {
@@ -466,7 +413,6 @@ fn count(
         milliwatts: milliampere_hours * volts * 3600.0 / seconds,
         integrated_milliwatts: integrate(&between(power), longest)?.milliwatts,
         seconds,
-        steps: changes.len(),
         scale: 1.0,
     })
 }

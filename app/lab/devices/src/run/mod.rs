@@ -7,7 +7,7 @@ use std::path::Path;
 
 use indicatif::ProgressBar;
 
-use crate::adb::{Device, DeviceError};
+use crate::adb::{Device, DeviceError, quoted};
 use crate::capture::{DeviceInfo, Outcome, RunInfo, VERSION};
 use crate::external_app::Subject;
 use crate::held_settings::{HeldSettings, Wanted};
@@ -15,7 +15,7 @@ use crate::phone::{self, PACKAGE};
 use yoro_settings::Settings;
 
 pub(crate) use session::LOST_TIMEOUT_S;
-pub use session::capture;
+pub(crate) use session::capture;
 
 /// Another application that is measured in place of this project's.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +65,7 @@ impl Plan {
     }
 
     /// Returns the settings that differ from the defaults, without those that every run has.
-    pub fn own_settings(&self) -> BTreeMap<String, String> {
+    pub(crate) fn own_settings(&self) -> BTreeMap<String, String> {
         if let Some(other) = &self.other {
             return BTreeMap::from([("package".into(), other.subject.package.clone())]);
         }
@@ -76,7 +76,7 @@ impl Plan {
     }
 
     /// Returns the description of the run for a new capture.
-    pub fn info(&self, found: &Found, started_unix_s: f64, start_celsius: Option<f64>) -> RunInfo {
+    pub(crate) fn info(&self, found: &Found, started_unix_s: f64, start_celsius: Option<f64>) -> RunInfo {
         RunInfo {
             version: VERSION,
             device: found.info.clone(),
@@ -99,7 +99,7 @@ impl Plan {
 
 /// The device on which runs are made.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub(crate) struct Found {
     /// Description of the device.
     pub info: DeviceInfo,
     /// Version of the application on the device.
@@ -111,31 +111,48 @@ pub struct Found {
 /// # Errors
 /// [`DeviceError`], also if the application is not installed, the battery saver is on, or the screen has a lock that
 /// only its owner can open.
-pub fn look(device: &dyn Device, package: &str) -> Result<Found, DeviceError> {
-    let serial = || device.serial().to_owned();
-    let application = phone::version(device, package)?.ok_or_else(|| match package {
-        PACKAGE => DeviceError::NotInstalled(serial()),
-        package => DeviceError::NoPackage { serial: serial(), package: package.into() },
+pub(crate) fn look(device: &Device, package: &str) -> Result<Found, DeviceError> {
+    let application = phone::version(device, package)?.ok_or_else(|| DeviceError::NotInstalled {
+        serial: device.serial().to_owned(),
+        package: package.into(),
     })?;
     if phone::saves_battery(device)? {
-        return Err(DeviceError::BatterySaver(serial()));
+        return Err(DeviceError::Unfit(format!(
+            "the battery saver of {} is on, which slows it down: turn it off (adb -s {} shell settings put global \
+             low_power 0)",
+            device.serial(),
+            quoted(device.serial())
+        )));
     }
     let keyguard = phone::keyguard(device)?;
     if keyguard.secure && keyguard.showing {
-        return Err(DeviceError::Locked(serial()));
+        return Err(locked(device));
     }
     Ok(Found { info: phone::info(device)?, application })
+}
+
+/// Returns the error of a screen lock that an unattended run cannot open.
+pub(crate) fn locked(device: &Device) -> DeviceError {
+    DeviceError::Unfit(format!(
+        "{} is locked by PIN, pattern or password, which ends a measurement as soon as its screen goes off: set its \
+         screen lock to none or swipe for the time of the measurement",
+        device.serial()
+    ))
 }
 
 /// Refuses a device whose battery values are not the device's power, because it is plugged in or they were set by hand.
 ///
 /// # Errors
-/// [`DeviceError::PluggedIn`] and [`DeviceError::BatteryHeld`], which name the remedy.
-pub fn refuse_charger(device: &dyn Device) -> Result<(), DeviceError> {
+/// [`DeviceError`], which names the remedy.
+pub(crate) fn refuse_charger(device: &Device) -> Result<(), DeviceError> {
     let battery = phone::battery(device)?;
     let serial = device.serial().to_owned();
     if battery.held {
-        return Err(DeviceError::BatteryHeld(serial));
+        return Err(DeviceError::Unfit(format!(
+            "what {serial} says of its battery was set by hand (dumpsys battery set or unplug): adb -s {} shell \
+             dumpsys battery reset",
+            quoted(&serial)
+        )));
     }
     if battery.plugged() {
         return Err(DeviceError::PluggedIn { serial, address: phone::wifi_address(device) });
@@ -149,7 +166,7 @@ pub fn refuse_charger(device: &dyn Device) -> Result<(), DeviceError> {
 /// # Errors
 /// [`DeviceError`], if the run could not begin.
 pub fn make(
-    device: &dyn Device,
+    device: &Device,
     plan: &Plan,
     wanted: &Wanted,
     folder: &Path,

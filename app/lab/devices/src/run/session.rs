@@ -6,12 +6,11 @@ use std::time::Duration;
 use indicatif::ProgressBar;
 
 use super::{Found, Plan, refuse_charger};
-use crate::adb::{Device, DeviceError};
+use crate::adb::{Device, DeviceError, now, sleep};
 use crate::capture::{Fault, FaultKind, Outcome, RunInfo, Sample, Writer};
 use crate::external_app::ExternalApp;
-use crate::follow::{Event, Follower, faults_of_loss};
+use crate::follow::{Event, Follower};
 use crate::held_settings::HeldSettings;
-use crate::mean_power::MeanPower;
 use crate::phone;
 use crate::reading::{LineContent, Reading};
 use yoro_files::interrupt;
@@ -30,8 +29,6 @@ const BOOT_TIMEOUT_S: f64 = 180.0;
 const RESTARTS: u32 = 3;
 /// Seconds for which the application runs longer than the run, so that the last second is logged.
 const MARGIN_S: f64 = 1.5;
-/// Interval in seconds at which the kernel's voltage is read, if the application gives it in whole volts only.
-const VOLTAGE_PERIOD_S: f64 = 5.0;
 /// Tolerance in Hz between the display's refresh rate and the one it is held at, since 60 may be 59.94.
 const REFRESH_TOLERANCE_HZ: f64 = 1.0;
 /// Interval at which waits check for interrupts and silence.
@@ -42,8 +39,8 @@ const POLL_INTERVAL: Duration = Duration::from_secs(1);
 ///
 /// # Errors
 /// [`DeviceError`] if there is no capture, or if further runs would be useless.
-pub fn capture(
-    device: &dyn Device,
+pub(crate) fn capture(
+    device: &Device,
     found: &Found,
     plan: &Plan,
     held: &mut HeldSettings,
@@ -56,7 +53,7 @@ pub fn capture(
         refuse_charger(device)?;
     }
     held.renew(device)?;
-    let started_unix_s = device.now();
+    let started_unix_s = now();
     let info = plan.info(found, started_unix_s, battery.celsius);
     let subject = plan.other.as_ref().map(|other| other.subject.clone());
     let label = format!("r{}-{:x}", plan.order, (started_unix_s * 1e3) as u64);
@@ -64,7 +61,7 @@ pub fn capture(
         device,
         plan,
         bar,
-        follower: Follower::new(device, false)?,
+        follower: Follower::new(device)?,
         reading: Reading::new(subject.is_none().then(|| label.clone())),
         external_app: subject.map(|subject| ExternalApp::new(device, subject)).transpose()?,
         label,
@@ -76,8 +73,6 @@ pub fn capture(
         others_since_s: None,
         delay_s: 0.0,
         has_ended: false,
-        kernel: KernelVoltage::default(),
-        power: MeanPower::default(),
         refresh_is_told: false,
     };
     for refused in held.refused() {
@@ -98,7 +93,6 @@ pub fn capture(
         _ => session.follow(),
     };
     let stopped = phone::stop(device, plan.package());
-    session.own_faults.extend(session.power.fault());
     match outcome {
         Ok(outcome) => {
             session.renew_faults()?;
@@ -111,9 +105,7 @@ pub fn capture(
         }
         Err(error) => {
             let outcome = match &error {
-                DeviceError::Refused { .. } | DeviceError::NotInstalled { .. } => {
-                    Outcome::Failed { reason: error.to_string() }
-                }
+                DeviceError::Refused { .. } => Outcome::Failed { reason: error.to_string() },
                 _ => Outcome::Interrupted { reason: error.to_string() },
             };
             // Report the first error of a full disk, not those that follow from it.
@@ -127,7 +119,7 @@ pub fn capture(
 }
 /// A run that is being captured.
 struct Session<'a> {
-    device: &'a dyn Device,
+    device: &'a Device,
     plan: &'a Plan,
     bar: &'a ProgressBar,
     follower: Follower<'a>,
@@ -149,24 +141,7 @@ struct Session<'a> {
     delay_s: f64,
     /// True once the application has logged its summary.
     has_ended: bool,
-    kernel: KernelVoltage,
-    power: MeanPower,
     refresh_is_told: bool,
-}
-
-/// The voltage from the kernel, for devices that otherwise give whole volts.
-#[derive(Clone, Copy, Debug)]
-struct KernelVoltage {
-    millivolts: Option<f64>,
-    /// Time of the last query.
-    asked_s: f64,
-    is_reported: bool,
-}
-
-impl Default for KernelVoltage {
-    fn default() -> KernelVoltage {
-        KernelVoltage { millivolts: None, asked_s: f64::NEG_INFINITY, is_reported: false }
-    }
 }
 
 impl Session<'_> {
@@ -175,12 +150,12 @@ impl Session<'_> {
         // The run's time continues while the application does not run.
         let passed_s = match self.reading.samples() {
             0 => 0.0,
-            _ => self.reading.time_s() + self.device.now() - self.heard_s,
+            _ => self.reading.time_s() + now() - self.heard_s,
         };
         self.others_since_s = None;
         if let Some(other) = &self.plan.other {
             self.bar.set_message("starting");
-            self.silent_since_s = self.device.now();
+            self.silent_since_s = now();
             return phone::start_other(self.device, &other.subject.package, &other.activity);
         }
         let left_s = self.plan.seconds() - passed_s + MARGIN_S;
@@ -192,7 +167,7 @@ impl Session<'_> {
         };
         self.bar.set_message("starting");
         self.has_ended = false;
-        self.silent_since_s = self.device.now();
+        self.silent_since_s = now();
         phone::start(self.device, &settings)
     }
 
@@ -207,8 +182,7 @@ impl Session<'_> {
                         return Ok(outcome);
                     }
                     // With other applications writing to it, the log is never quiet.
-                    let alone =
-                        self.others_since_s.is_some_and(|since| self.device.now() - since >= SILENCE_S);
+                    let alone = self.others_since_s.is_some_and(|since| now() - since >= SILENCE_S);
                     if alone && let Some(outcome) = self.quiet()? {
                         return Ok(outcome);
                     }
@@ -231,7 +205,7 @@ impl Session<'_> {
     fn line(&mut self, line: &[u8]) -> Result<Option<Outcome>, DeviceError> {
         self.writer.log(line)?;
         let line = &*crate::log::text(line);
-        let now = self.device.now();
+        let now = now();
         let passed_s = now - self.heard_s + self.delay_s;
         let damaged = self.reading.damaged();
         let is_own = self.external_app.as_mut().map_or(Ok(true), |app| app.accepts(line))?;
@@ -240,11 +214,9 @@ impl Session<'_> {
         let outcome = match news {
             LineContent::Sample(mut sample) => {
                 (self.heard_s, self.silent_since_s) = (now, now);
-                match &mut self.external_app {
-                    Some(app) => app.complete(&mut sample, &mut self.reading)?,
-                    None => self.complete(&mut sample)?,
+                if let Some(app) = &mut self.external_app {
+                    app.complete(&mut sample, &mut self.reading)?;
                 }
-                self.power.add(&sample);
                 self.compare_refresh(&sample)?;
                 self.writer.sample(&sample)?;
                 self.show(&sample);
@@ -266,32 +238,6 @@ impl Session<'_> {
         let is_over = self.reading.time_s() >= self.plan.seconds() - MARGIN_S;
         let has_ended = self.has_ended || self.external_app.is_some();
         Ok(outcome.or_else(|| (is_over && has_ended).then_some(Outcome::Complete)))
-    }
-
-    /// Uses the kernel's voltage if the application gives whole volts.
-    fn complete(&mut self, sample: &mut Sample) -> Result<(), DeviceError> {
-        if sample.voltage_mv.is_some() || !self.reading.has_whole_volts() {
-            return Ok(());
-        }
-        let now = self.device.now();
-        if now - self.kernel.asked_s >= VOLTAGE_PERIOD_S {
-            self.kernel.asked_s = now;
-            match phone::kernel_battery(self.device) {
-                Ok(battery) => self.kernel.millivolts = battery.voltage_mv,
-                // The log reports this as well.
-                Err(error) if error.is_lost() => {}
-                Err(error) => return Err(error),
-            }
-            if !std::mem::replace(&mut self.kernel.is_reported, true) {
-                let detail = match self.kernel.millivolts {
-                    Some(_) => format!("the voltage is the kernel's, asked every {VOLTAGE_PERIOD_S:.0} s"),
-                    None => "the kernel's voltage may not be read either: power is left out".into(),
-                };
-                self.fault(FaultKind::VoltageInVolts, sample.time_s, detail)?;
-            }
-        }
-        sample.voltage_mv = self.kernel.millivolts;
-        Ok(())
     }
 
     /// Compares the display's refresh rate with the requested one: a setting may be accepted without having an effect.
@@ -343,8 +289,12 @@ impl Session<'_> {
 
     fn back(&mut self, seconds: f64, rebooted: bool) -> Result<(), DeviceError> {
         (self.delay_s, self.others_since_s) = (seconds, None);
-        self.own_faults.extend(faults_of_loss(self.reading.time_s(), seconds, rebooted));
-        self.renew_faults()
+        let at_s = self.reading.time_s();
+        if rebooted {
+            let detail = "the device was started anew, and its log with it".into();
+            self.own_faults.push(Fault { kind: FaultKind::Rebooted, at_s: Some(at_s), detail });
+        }
+        self.fault(FaultKind::Disconnected, at_s, format!("lost for {seconds:.0} s"))
     }
 
     /// Decides what to do after a silence.
@@ -354,7 +304,7 @@ impl Session<'_> {
                 format!("{} was lost and did not come back within {seconds:.0} s", self.device.serial());
             return Ok((seconds > LOST_TIMEOUT_S).then_some(Outcome::Interrupted { reason }));
         }
-        let silent_s = self.device.now() - self.silent_since_s;
+        let silent_s = now() - self.silent_since_s;
         if silent_s < SILENCE_S {
             return Ok(None);
         }
@@ -367,13 +317,13 @@ impl Session<'_> {
             answer => !answer?.is_empty(),
         };
         if running {
-            let reason = match &self.external_app {
-                Some(app) if silent_s > START_TIMEOUT_S => app.silence(),
-                _ => format!(
-                    "the application has said nothing for {silent_s:.0} s: the screen may be off, or something else in \
-                     front"
-                ),
+            let what = match &self.external_app {
+                Some(_) => "Meta's runtime has logged no frame rate of the application (tag VrApi)",
+                None => "the application has said nothing",
             };
+            let reason = format!(
+                "{what} for {silent_s:.0} s: the screen may be off, something else in front, or another process logs"
+            );
             return Ok((silent_s > START_TIMEOUT_S).then_some(Outcome::Failed { reason }));
         }
         // The application has ended, and whether it would have logged more is unknown.
@@ -399,12 +349,12 @@ impl Session<'_> {
 
     /// Waits until Android has started.
     fn await_boot(&self) -> Result<(), DeviceError> {
-        let begin = self.device.now();
-        while self.device.now() - begin < BOOT_TIMEOUT_S && !interrupt::requested() {
+        let begin = now();
+        while now() - begin < BOOT_TIMEOUT_S && !interrupt::requested() {
             if self.device.shell(&["getprop", "sys.boot_completed"])?.trim() == "1" {
                 break;
             }
-            self.device.sleep(POLL_INTERVAL);
+            sleep(POLL_INTERVAL);
         }
         phone::wake(self.device);
         Ok(())

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::error::StudyError;
+use super::StudyError;
 use super::ratings::Ratings;
 use yoro_files::interrupt;
 use yoro_report::stats::{median, unique};
@@ -12,23 +12,21 @@ use yoro_report::{Interval, Sample};
 
 /// A participant who was left out of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Excluded {
-    /// Participant.
-    pub participant: String,
+pub(super) struct Excluded {
+    pub(super) participant: String,
     /// Which ratings are missing.
-    pub reason: String,
+    pub(super) reason: String,
 }
 
 /// What participants say of a method: one value for each, the mean over the scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Opinion {
+pub(super) struct Opinion {
     /// Mean and scatter over the participants.
     #[serde(flatten)]
-    pub sample: Sample,
-    /// The median.
-    pub median: f64,
+    pub(super) sample: Sample,
+    pub(super) median: f64,
     /// The interval of the mean; `None` for a single participant.
-    pub interval: Option<Interval>,
+    pub(super) interval: Option<Interval>,
 }
 
 impl Opinion {
@@ -40,47 +38,41 @@ impl Opinion {
 
 /// A method beside the baseline by the answers to one question.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Question {
-    /// The question's name.
-    pub question: String,
-    /// The method that was rated.
-    pub method: String,
+pub(super) struct Question {
+    pub(super) question: String,
+    pub(super) method: String,
     /// Scenes that each participant of the comparison has rated.
-    pub scenes: Vec<String>,
+    pub(super) scenes: Vec<String>,
     /// Each participant with the mean ratings of the method and of the baseline over the scenes.
-    pub participants: Vec<(String, f64, f64)>,
+    pub(super) participants: Vec<(String, f64, f64)>,
     /// Participants left out of this comparison, with the reason.
-    pub excluded: Vec<Excluded>,
-    /// Ratings of the method.
-    pub ours: Opinion,
-    /// Ratings of the baseline.
-    pub baseline: Opinion,
+    pub(super) excluded: Vec<Excluded>,
+    pub(super) ours: Opinion,
+    pub(super) baseline: Opinion,
     /// Method minus baseline, by participant.
-    pub difference: Opinion,
+    pub(super) difference: Opinion,
 }
 
 /// An analysed study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Study {
     /// The method that the others are compared with.
-    pub baseline: String,
-    /// Lowest and highest rating.
-    pub scale: [f64; 2],
+    pub(super) baseline: String,
+    pub(super) scale: [f64; 2],
     /// Program, version and command that made the analysis.
-    pub made_by: String,
-    /// Number of participants.
-    pub participants: usize,
+    pub(super) made_by: String,
+    pub(super) participants: usize,
     /// Comparisons by question, then by method.
-    pub questions: Vec<Question>,
+    pub(super) questions: Vec<Question>,
     /// Question and method of the comparisons for which nobody has answered completely.
-    pub unanswered: Vec<(String, String)>,
+    pub(super) unanswered: Vec<(String, String)>,
 }
 
 impl Study {
     /// Analyses ratings on a scale from its lowest to its highest rating.
     ///
     /// # Errors
-    /// [`StudyError::Nothing`] if the baseline or any other method is missing; [`StudyError::Interrupted`].
+    /// [`StudyError::Table`] if the baseline or any other method is missing; [`StudyError::Interrupted`].
     pub fn new(
         ratings: &Ratings,
         baseline: &str,
@@ -88,7 +80,7 @@ impl Study {
         made_by: String,
     ) -> Result<Study, StudyError> {
         let methods: BTreeSet<&str> = ratings.rows.iter().map(|row| row.method.as_str()).collect();
-        let nothing = |what: String| StudyError::Nothing { path: ratings.path.clone(), what };
+        let nothing = |what: String| StudyError::Table { path: ratings.path.clone(), line: None, what };
         let named = || methods.iter().copied().collect::<Vec<_>>().join(", ");
         if !methods.contains(baseline) {
             let what = format!("nobody has rated {baseline}: name one of {} as the baseline", named());
@@ -176,7 +168,7 @@ fn compare(ratings: &Ratings, question: &str, method: &str, baseline_method: &st
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::Row;
+    use crate::study::ratings::Row;
 
     /// Makes up ratings: for each participant two scenes, whose differences lie around the given one.
     fn made_up(differences: &[f64]) -> Vec<Row> {

@@ -8,7 +8,7 @@ use rand::seq::SliceRandom as _;
 use rand_pcg::Pcg32;
 use serde::Serialize;
 
-use super::error::StudyError;
+use super::StudyError;
 use crate::latin_square::balanced_square;
 use crate::table::csv_text;
 use yoro_files as files;
@@ -24,26 +24,22 @@ pub struct Condition {
 
 /// One stimulus that a participant looks at and rates.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Trial {
+struct Trial {
     /// The participant, `P01` and so on.
-    pub participant: String,
+    participant: String,
     /// Place in the participant's order, from 1.
-    pub trial: u32,
-    /// Scene.
-    pub scene: String,
-    /// Method.
-    pub method: String,
-    /// Viewer settings of the trial.
-    pub settings: BTreeMap<String, String>,
+    trial: u32,
+    scene: String,
+    method: String,
+    settings: BTreeMap<String, String>,
 }
 
 /// The orders of all participants.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Plan {
-    /// The seed that reproduces the plan.
-    pub seed: u64,
+    seed: u64,
     /// Trials by participant, in the participant's order.
-    pub trials: Vec<Trial>,
+    trials: Vec<Trial>,
     /// Number of participants per balanced block. If the number of participants is a multiple of it, every scene
     /// follows every other scene equally often, and every method is equally often in each place.
     pub balanced_at: usize,
@@ -131,9 +127,9 @@ pub type Trials = BTreeMap<(String, u32), (String, String)>;
 /// [`StudyError`], also if a column is missing or a row is damaged.
 pub fn read_trials(path: &Path) -> Result<Trials, StudyError> {
     let bytes = files::read(path)?;
-    let damaged = |line: u64| StudyError::Row {
+    let damaged = |line: u64| StudyError::Table {
         path: path.into(),
-        line,
+        line: Some(line),
         what: "this is not a row of a plan: draw the plan again".into(),
     };
     let mut table = csv::Reader::from_reader(&bytes[..]);

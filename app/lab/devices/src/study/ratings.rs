@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::error::StudyError;
+use super::StudyError;
 use super::plan::Trials;
 use crate::log::{self, Kind};
 use crate::table::{csv_mistake, csv_text};
@@ -15,26 +15,20 @@ const COLUMNS: [&str; 5] = ["participant", "method", "scene", "question", "ratin
 
 /// One answer.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// Participant.
+pub(super) struct Row {
     pub participant: String,
-    /// Method.
     pub method: String,
-    /// Scene.
     pub scene: String,
-    /// Question.
     pub question: String,
-    /// The answer.
     pub rating: f64,
 }
 
 /// A table of ratings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ratings {
-    /// The file.
-    pub path: PathBuf,
+    pub(super) path: PathBuf,
     /// The ratings, at most one per participant, method, scene and question.
-    pub rows: Vec<Row>,
+    pub(super) rows: Vec<Row>,
 }
 
 impl Ratings {
@@ -47,7 +41,8 @@ impl Ratings {
         // Excel starts files with a byte order mark.
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
         let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
-        let row_error = |line: u64, what: String| StudyError::Row { path: path.into(), line, what };
+        let row_error =
+            |line: u64, what: String| StudyError::Table { path: path.into(), line: Some(line), what };
         let csv_error = |error: csv::Error| {
             let (line, what) = csv_mistake(&error);
             row_error(line, format!("{what}: correct the row"))
@@ -55,10 +50,10 @@ impl Ratings {
         let header = table.headers().map_err(csv_error)?.clone();
         let mut at = [0; COLUMNS.len()];
         for (place, column) in at.iter_mut().zip(COLUMNS) {
-            *place = header
-                .iter()
-                .position(|name| name.eq_ignore_ascii_case(column))
-                .ok_or(StudyError::Column { path: path.into(), column })?;
+            *place = header.iter().position(|name| name.eq_ignore_ascii_case(column)).ok_or_else(|| {
+                let what = format!("there is no column \"{column}\": it needs {}", COLUMNS.join(", "));
+                StudyError::Table { path: path.into(), line: None, what }
+            })?;
         }
         let mut rows = Vec::new();
         let mut lines: BTreeMap<[String; 4], u64> = BTreeMap::new();
@@ -92,7 +87,7 @@ impl Ratings {
         }
         if rows.is_empty() {
             let what = "there is no rating in it: add rows".into();
-            return Err(StudyError::Nothing { path: path.into(), what });
+            return Err(StudyError::Table { path: path.into(), line: None, what });
         }
         Ok(Ratings { path: path.into(), rows })
     }

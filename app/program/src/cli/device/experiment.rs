@@ -59,27 +59,6 @@ impl Subcommand for ExperimentArgs {
     }
 }
 
-/// The power in watts of a phone that renders stereo. A guess that serves only the plan, until it is measured.
-const GUESSED_WATTS: f64 = 3.5;
-/// The energy in watt-hours of a usual phone's battery of 4500 mAh.
-const USUAL_WATT_HOURS: f64 = 17.0;
-
-/// Returns a sentence if a plan of this many seconds needs more than one battery charge.
-fn charges(experiment: &Experiment, seconds: f64) -> Option<String> {
-    let watt_hours = GUESSED_WATTS * seconds / 3600.0;
-    let usable = |from: f64| USUAL_WATT_HOURS * (from - experiment.min_level) / 100.0;
-    let missing = watt_hours - usable(100.0);
-    (experiment.power && missing > 0.0).then(|| {
-        let times = (missing / usable(experiment.charge_level)).ceil();
-        format!(
-            "at a guessed {GUESSED_WATTS} W that takes {watt_hours:.0} Wh, and the battery of a phone with 4500 mAh holds \
-             {USUAL_WATT_HOURS:.0} Wh: about {times:.0} time(s), below {:.0} %, the plan waits for somebody who charges it to \
-             {:.0} %",
-            experiment.min_level, experiment.charge_level
-        )
-    })
-}
-
 fn print_plan(experiment: &Experiment, serials: &[String]) {
     let any = [String::new()];
     for serial in if serials.is_empty() { &any } else { serials } {
@@ -108,9 +87,6 @@ fn print_plan(experiment: &Experiment, serials: &[String]) {
             length(shortest),
             length(longest)
         );
-        if let Some(charges) = charges(experiment, shortest) {
-            println!("{charges}");
-        }
     }
     if serials.is_empty() {
         println!("the order is another one on each device: give --serial to see it");

@@ -2,7 +2,7 @@
 
 use super::which::SourceArgs;
 use crate::cli::Subcommand;
-use yoro_devices::adb::{Adb as _, Device, DeviceError, State};
+use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::phone;
 
 /// List the devices, their batteries and the yoro on them
@@ -25,9 +25,10 @@ impl Subcommand for ListArgs {
             "SERIAL", "STATE", "DEVICE", "ANDROID", "BATTERY", "TEMP", "PLUGGED"
         );
         for listed in devices {
-            let mut row = format!("{:<22} {:<14}", listed.serial, listed.state.name());
-            if listed.state == State::Ready {
-                match details(&*adb.open(&listed.serial)) {
+            let state = if listed.is_ready() { "ready" } else { &listed.state };
+            let mut row = format!("{:<22} {state:<14}", listed.serial);
+            if listed.is_ready() {
+                match details(&adb.open(&listed.serial)) {
                     Ok(details) => row += &details,
                     Err(error) => row += &format!(" {error}"),
                 }
@@ -38,7 +39,7 @@ impl Subcommand for ListArgs {
     }
 }
 
-fn details(device: &dyn Device) -> Result<String, DeviceError> {
+fn details(device: &Device) -> Result<String, DeviceError> {
     let info = phone::info(device)?;
     let battery = phone::battery(device)?;
     let version = phone::version(device, phone::PACKAGE)?;

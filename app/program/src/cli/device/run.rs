@@ -114,7 +114,7 @@ impl Subcommand for RunArgs {
 }
 
 fn one(
-    device: &dyn Device,
+    device: &Device,
     plan: &Plan,
     wanted: &Wanted,
     folder: &Path,

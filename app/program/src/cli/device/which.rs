@@ -6,8 +6,7 @@ use std::thread;
 use anyhow::bail;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
-use yoro_devices::adb::{self, Device, DeviceError};
-use yoro_devices::adb_program::AdbProgram;
+use yoro_devices::adb::{Adb, Device, DeviceError};
 use yoro_files::interrupt;
 
 use crate::cli::message;
@@ -22,8 +21,8 @@ pub struct SourceArgs {
 
 impl SourceArgs {
     /// Opens the source of devices.
-    pub fn open(&self) -> Result<AdbProgram, DeviceError> {
-        AdbProgram::find(self.adb.as_deref())
+    pub fn open(&self) -> Result<Adb, DeviceError> {
+        Adb::find(self.adb.as_deref())
     }
 }
 
@@ -45,16 +44,16 @@ impl WhichArgs {
     ///
     /// # Errors
     /// [`DeviceError`] if there is no device, or if there are several and none was named.
-    pub fn choose(&self) -> Result<Vec<Box<dyn Device>>, DeviceError> {
-        adb::choose(&self.source.open()?, &self.serials, self.all)
+    pub fn choose(&self) -> Result<Vec<Device>, DeviceError> {
+        self.source.open()?.choose(&self.serials, self.all)
     }
 }
 
 /// Runs `work` on all devices at the same time, each with its own progress bar, and prints the results. The error
 /// contains the failures of all devices.
-pub fn each<F>(devices: Vec<Box<dyn Device>>, work: F) -> anyhow::Result<()>
+pub fn each<F>(devices: Vec<Device>, work: F) -> anyhow::Result<()>
 where
-    F: Fn(&dyn Device, &ProgressBar) -> anyhow::Result<String> + Sync,
+    F: Fn(&Device, &ProgressBar) -> anyhow::Result<String> + Sync,
 {
     let bars = MultiProgress::new();
     let style = ProgressStyle::with_template("{prefix}  {bar:20} {pos}/{len} s  {wide_msg}");
@@ -62,12 +61,12 @@ where
     let count = devices.len();
     let mut failures = Vec::new();
     thread::scope(|scope| {
-        let begin = |device: Box<dyn Device>| {
+        let begin = |device: Device| {
             let serial = device.serial().to_owned();
             let bar = bars.add(ProgressBar::new(0).with_style(style.clone()).with_prefix(serial.clone()));
             let work = &work;
             let thread = scope.spawn(move || {
-                let done = work(&*device, &bar);
+                let done = work(&device, &bar);
                 bar.finish_and_clear();
                 done
             });

@@ -1,6 +1,5 @@
 //! What the report consists of.
 
-mod answers;
 mod format;
 mod plots;
 mod tables;
@@ -9,7 +8,7 @@ use std::fmt::Write as _;
 
 use super::run::LEAST_COVERED;
 use super::{Device, DeviceReport, Difference, Quantity, Run};
-use answers::answers;
+use format::answers;
 use plots::{change_plots, trace_plots};
 use tables::{device_tables, notes_table, overview_tables};
 use yoro_report::{Report, Section, Text};
@@ -150,27 +149,24 @@ fn facts(report: &DeviceReport, device: &Device) -> String {
     format!("Android {}{capacity}{cells}{application}; {whole} of {runs} runs count in full.", device.android)
 }
 
-fn method_notes(report: &DeviceReport) -> Vec<String> {
-    vec![
-        "Power is current x voltage, integrated by trapezoids over the times of the samples. Gaps are not bridged: \
-         what is inside them counts for nothing."
+fn method_notes(report: &DeviceReport) -> [String; 4] {
+    [
+        "Power is current x voltage, integrated by trapezoids over the times of the samples. Gaps are not bridged. The CPU's \
+         load is in percent of one core; MB are 10^6 bytes; frame and GPU times are means over frames."
             .into(),
-        "A run gives one value of each quantity: its seconds depend on each other. Intervals rest on repetitions, and \
-         two methods are compared by runs of the same device, scene and repetition."
-            .into(),
+        format!(
+            "A run gives one value of each quantity. Intervals rest on repetitions: methods are compared with the baseline, \
+             {}, by runs of the same device, scene and repetition.",
+            report.baseline
+        ),
         "A change in percent is the geometric mean of the pairs' ratios, its interval Student's t of their logarithms. \
-         Over scenes, each weighs the same; the scatter of the repetitions around their scenes is pooled. Where each \
+         Over scenes, each weighs the same, and the scatter of the repetitions around their scenes is pooled. Where each \
          scene was measured once, the interval rests on the scatter of the scenes, and is marked."
             .into(),
         format!(
             "A run does not count if it was interrupted or failed, the device or the application was started anew, or \
              less than {:.0} % of it was measured. Its power does not count while plugged in, or without current.",
             100.0 * LEAST_COVERED
-        ),
-        format!(
-            "The baseline is {}. The CPU's load is in percent of one core; MB are 10^6 bytes; frame and GPU times are \
-             means over frames.",
-            report.baseline
         ),
     ]
 }
