@@ -51,7 +51,7 @@ impl StereoMethod for Conventional {
             let views = std::slice::from_ref(&view);
             let is_complete = frame.renderer.draw_all(targets, &frame.scene, views, depth, Some(to))?;
             if !is_complete {
-                frame.renderer.develop(targets, &view, Eye::Left, [0, 0], &to.color, None);
+                frame.renderer.composite(targets, &view, Eye::Left, [0, 0], &to.color, None);
             }
             if depth {
                 let depth = targets.depth(view.size, Eye::Left, [0, 0]);

@@ -12,7 +12,7 @@ use yoro_gl::{
 /// The format of depth, as in the samples of a view.
 const DEPTH: Format = Format::Depth32F;
 
-/// What is drawn over both eyes of a frame, after the rendered one is developed and the other one synthesized.
+/// What is drawn over both eyes of a frame, after the rendered one is composited and the other one synthesized.
 #[derive(Clone, Copy)]
 pub(super) struct OverlaySurfaces {
     /// The near objects, if they are left out of the synthesis.
@@ -41,7 +41,7 @@ impl OverlaySurfaces {
 /// of the samples is the eye's image: all in one pass, which reads nothing back and stores no sample.
 ///
 /// If somebody reads the eye's depth, a pixel has one sample, since samples have no depth in common.
-pub(super) struct Over {
+pub(super) struct OverlayPass {
     gl: Rc<Context>,
     samples: u32,
     /// Samples outside tiles.
@@ -65,12 +65,12 @@ enum Way {
     Tile,
 }
 
-impl Over {
+impl OverlayPass {
     /// Makes it without images.
-    pub(super) fn new(renderer: &Renderer) -> Result<Over, GlError> {
+    pub(super) fn new(renderer: &Renderer) -> Result<OverlayPass, GlError> {
         let (gl, samples) = (&renderer.gl, renderer.samples());
         let tile = (samples > 1 && gl.capabilities().tile_samples).then(|| TileTarget::new(gl, samples));
-        Ok(Over {
+        Ok(OverlayPass {
             gl: gl.clone(),
             samples,
             multisample: None,
@@ -152,7 +152,7 @@ impl Over {
         Ok(unsafe { tile.fit(&[color], depth) }.is_ok())
     }
 
-    /// Draws over the eye that was written to the place that [`Over::begin`] returned, and completes its target.
+    /// Draws over the eye that was written to the place that [`OverlayPass::begin`] returned, and completes its target.
     pub(super) fn finish(&self, frame: &Frame, eye: Eye, over: &OverlaySurfaces) {
         if self.way == Way::Direct {
             return;

@@ -11,7 +11,7 @@ use super::light_tiles::LightTiles;
 use super::lights::Lights;
 use super::lit::LitScene;
 use super::rectangle::Rectangle;
-use super::renderer::{Develop, Outlines, Renderer, Resolve};
+use super::renderer::{Composite, Outlines, Renderer, Resolve};
 use super::scene::{FREE_UNIT, GpuScene, MAP_NAMES};
 use super::settings::SAMPLE_DEPTH;
 use super::shadow::ShadowMap;
@@ -359,7 +359,7 @@ impl Renderer {
     }
 
     /// Computes the bloom of an eye's image in the targets.
-    pub(crate) fn shine(&self, targets: &Targets, view: &View, eye: Eye) {
+    pub(crate) fn render_bloom(&self, targets: &Targets, view: &View, eye: Eye) {
         if let Some((pass, bloom)) = self.bloom.as_ref().zip(targets.bloom.as_ref()) {
             let shining = Shining {
                 picture: targets.color().color(0),
@@ -373,7 +373,7 @@ impl Renderer {
 
     /// Writes a part of an eye's image, from pixel `crop` of the eye on, with bloom. In the rectangle `depth` of the target
     /// it also writes the depth of the image, to draw more over it.
-    pub(crate) fn develop(
+    pub(crate) fn composite(
         &self,
         targets: &Targets,
         view: &View,
@@ -382,19 +382,19 @@ impl Renderer {
         to: &Destination,
         depth: Option<Rectangle>,
     ) {
-        let kind = Develop { bloom: self.bloom.is_some(), ..Develop::default() };
-        self.develop_as(targets, view, eye, crop, to, depth, kind);
+        let kind = Composite { bloom: self.bloom.is_some(), ..Composite::default() };
+        self.composite_as(targets, view, eye, crop, to, depth, kind);
     }
 
     /// Writes a part of an image and its depth, without bloom, into other targets.
     fn load(&self, from: &Targets, view: &View, crop: [u32; 2], targets: &Targets, to: &Destination) {
         let carries = if targets.carries() { targets.sample_count() } else { 0 };
-        let kind = Develop { carries, ..Develop::default() };
-        self.develop_as(from, view, Eye::Left, crop, to, Some(Rectangle::whole(to.size)), kind);
+        let kind = Composite { carries, ..Composite::default() };
+        self.composite_as(from, view, Eye::Left, crop, to, Some(Rectangle::whole(to.size)), kind);
     }
 
     #[allow(clippy::too_many_arguments, reason = "a pass names what it reads and writes")]
-    fn develop_as(
+    fn composite_as(
         &self,
         targets: &Targets,
         view: &View,
@@ -402,7 +402,7 @@ impl Renderer {
         crop: [u32; 2],
         to: &Destination,
         depth: Option<Rectangle>,
-        kind: Develop,
+        kind: Composite,
     ) {
         // Outlines of an array's eye are in a picture of its own.
         let layer = targets.color_layer(eye);
@@ -415,10 +415,10 @@ impl Renderer {
             let pass = self.gl.pass("copy").read("copied", copied).write([to.image(Format::Rgba8)]);
             return pass.run(|| targets.color().copy_color(from, to));
         }
-        let plain = Develop { layer: layer.is_some(), ..kind };
+        let plain = Composite { layer: layer.is_some(), ..kind };
         let offset = [0, 1].map(|i| (corner[i] + crop[i]) as i32 - to.origin[i] as i32);
-        let draw = |variant: Develop, image: Option<&DepthImage>, part: &Rectangle| {
-            let Some((_, program)) = self.develop.iter().find(|(made, _)| *made == variant) else { return };
+        let draw = |variant: Composite, image: Option<&DepthImage>, part: &Rectangle| {
+            let Some((_, program)) = self.composite.iter().find(|(made, _)| *made == variant) else { return };
             if part.size.contains(&0) {
                 return;
             }
@@ -443,7 +443,7 @@ impl Renderer {
             self.gl.draw_screen();
         };
         let color = Image { size: to.size, ..targets.color().color(0).image() };
-        let mut pass = self.gl.pass("develop").read("color_map", color).write([to.image(Format::Rgba8)]);
+        let mut pass = self.gl.pass("composite").read("color_map", color).write([to.image(Format::Rgba8)]);
         if let Some(bloom) = bloom {
             pass = pass.read("bloom", bloom.result());
         }
@@ -457,7 +457,7 @@ impl Renderer {
             self.gl.overwrite(to, 1, depth.is_some());
             let Some(part) = depth else { return draw(plain, None, &Rectangle::whole(to.size)) };
             let image = targets.depth(view.size, eye, crop);
-            draw(Develop { depth: Some(image.is_pair), ..plain }, Some(&image), &part);
+            draw(Composite { depth: Some(image.is_pair), ..plain }, Some(&image), &part);
             part.around(to.size).iter().for_each(|part| draw(plain, None, part));
         });
     }
@@ -499,7 +499,7 @@ impl Renderer {
         });
         self.draw_transparent(targets, scene, views);
         self.resolve(targets, view, depth, self.ink, None)?;
-        self.shine(targets, view, Eye::Left);
+        self.render_bloom(targets, view, Eye::Left);
         Ok(())
     }
 
@@ -531,7 +531,7 @@ impl Renderer {
         self.draw_on_sky_as(targets, scene, &[*view], &Part::Selected(&culler), Some(from));
         self.draw_transparent(targets, scene, std::slice::from_ref(view));
         self.resolve(targets, view, depth, self.ink, None)?;
-        self.shine(targets, view, Eye::Left);
+        self.render_bloom(targets, view, Eye::Left);
         Ok(())
     }
 }

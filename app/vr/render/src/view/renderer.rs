@@ -3,7 +3,7 @@
 //!
 //! opaque surfaces -> sky -> (transparent surfaces) -> average of the samples, and their nearest depth if something
 //! reads it -> bloom. Everything before the bloom is one pass on a tile-based GPU. Bloom is added where an eye is
-//! written last: by the synthesis, or by [`Renderer::develop`].
+//! written last: by the synthesis, or by [`Renderer::composite`].
 
 use std::rc::Rc;
 
@@ -44,7 +44,7 @@ pub struct Renderer {
     pub(super) carry: Option<CarryPass>,
     pub(super) resolve: Vec<(Resolve, Program)>,
     pub(super) bloom: Option<BloomPass>,
-    pub(super) develop: Vec<(Develop, Program)>,
+    pub(super) composite: Vec<(Composite, Program)>,
 }
 
 /// A variant of `render/resolve.frag`.
@@ -56,9 +56,9 @@ pub(super) struct Resolve {
     pub layer: bool,
 }
 
-/// A variant of `render/develop.frag`.
+/// A variant of `render/composite.frag`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Develop {
+pub(super) struct Composite {
     pub bloom: bool,
     /// Writes depth; `Some(true)` from pairs.
     pub depth: Option<bool>,
@@ -144,7 +144,7 @@ impl Renderer {
             carry,
             resolve: Vec::new(),
             bloom: (settings.bloom && scene.is_lit()).then(|| BloomPass::new(gl)).transpose()?,
-            develop: Vec::new(),
+            composite: Vec::new(),
         };
         renderer.prepare(scene, Layout::Single)?;
         Ok(renderer)
@@ -210,13 +210,13 @@ impl Renderer {
         Ok(&mut made.0.insert(fitting).2)
     }
 
-    /// Develops the whole view in the targets.
+    /// Composites the whole view in the targets.
     fn complete<'a>(&self, targets: &'a mut Targets, view: &View) -> Result<RenderedView<'a>, GlError> {
-        if self.develops() {
+        if self.has_composite() {
             let to = Destination::whole(targets.picture(view.size)?);
-            self.develop(targets, view, Eye::Left, [0, 0], &to, None);
+            self.composite(targets, view, Eye::Left, [0, 0], &to, None);
         }
-        let color = targets.developed.as_ref().filter(|_| self.develops()).unwrap_or(targets.color());
+        let color = targets.composited.as_ref().filter(|_| self.has_composite()).unwrap_or(targets.color());
         Ok(RenderedView { color, depth: targets.depth(view.size, Eye::Left, [0, 0]) })
     }
 }
@@ -250,7 +250,7 @@ impl Renderer {
     }
 
     /// True if bloom is added to the average of the samples.
-    pub(crate) fn develops(&self) -> bool {
+    pub(crate) fn has_composite(&self) -> bool {
         self.bloom.is_some()
     }
 
@@ -273,19 +273,19 @@ impl Renderer {
             self.prepare_resolve(Resolve { samples, ink: self.ink, depth: samples > 1, layer })?;
         }
         if self.bloom.is_some() || layer {
-            self.prepare_develop(Develop { bloom: self.bloom.is_some(), layer, ..Develop::default() })?;
+            self.prepare_composite(Composite { bloom: self.bloom.is_some(), layer, ..Composite::default() })?;
         }
         Ok(())
     }
 
-    /// Compiles the programs that draw over a developed eye, with one sample in each pixel, too, and those that develop
+    /// Compiles the programs that draw over a composited eye, with one sample in each pixel, too, and those that composite
     /// it with its depth.
     pub(crate) fn prepare_over(&mut self, scene: &GpuScene) -> Result<(), GlError> {
         self.prepare_variant(scene, Variant::plain(1))?;
         let depth = Some(self.way == DepthResolve::InColor);
-        let plain = Develop { bloom: self.bloom.is_some(), ..Develop::default() };
-        self.prepare_develop(plain)?;
-        self.prepare_develop(Develop { depth, ..plain })
+        let plain = Composite { bloom: self.bloom.is_some(), ..Composite::default() };
+        self.prepare_composite(plain)?;
+        self.prepare_composite(Composite { depth, ..plain })
     }
 
     /// Compiles the program that loads an image and its depth without bloom, and the resolve of a view without
@@ -295,7 +295,7 @@ impl Renderer {
         let carried = self.way == DepthResolve::InColor;
         for carries in [false, true].into_iter().take(1 + usize::from(carried)) {
             let carries = if carries { self.settings.msaa } else { 0 };
-            self.prepare_develop(Develop { depth: Some(carried), carries, ..Develop::default() })?;
+            self.prepare_composite(Composite { depth: Some(carried), carries, ..Composite::default() })?;
         }
         Ok(())
     }
@@ -351,8 +351,8 @@ impl Renderer {
         Ok(())
     }
 
-    fn prepare_develop(&mut self, variant: Develop) -> Result<(), GlError> {
-        if self.develop.iter().all(|(made, _)| *made != variant) {
+    fn prepare_composite(&mut self, variant: Composite) -> Result<(), GlError> {
+        if self.composite.iter().all(|(made, _)| *made != variant) {
             let flags = [
                 ("BLOOM", variant.bloom),
                 ("WRITE_DEPTH", variant.depth.is_some()),
@@ -362,8 +362,8 @@ impl Renderer {
             let on = flags.into_iter().filter(|(_, on)| *on);
             let mut defines: Vec<_> = on.map(|(name, _)| (name, String::new())).collect();
             defines.extend((variant.carries > 0).then(|| ("CARRIED", variant.carries.to_string())));
-            let program = Program::new(&self.gl, ShaderSource::Screen("render/develop.frag"), &defines)?;
-            self.develop.push((variant, program));
+            let program = Program::new(&self.gl, ShaderSource::Screen("render/composite.frag"), &defines)?;
+            self.composite.push((variant, program));
         }
         Ok(())
     }
@@ -389,7 +389,7 @@ impl Renderer {
         let culler = Culler::selecting(view, selection);
         self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
         self.resolve(targets, view, true, self.ink, None)?;
-        self.shine(targets, view, Eye::Left);
+        self.render_bloom(targets, view, Eye::Left);
         Ok(())
     }
 
@@ -404,7 +404,7 @@ impl Renderer {
         to: Option<&EyeTarget>,
     ) -> Result<bool, GlError> {
         let view = &views[0];
-        let to = to.filter(|_| !self.develops() && !self.ink);
+        let to = to.filter(|_| !self.has_composite() && !self.ink);
         let direct = targets.fit(view, scene.detail(view), self.needs(depth), to)?;
         let culler = Culler::of_view(view);
         let part = match views.len() {
@@ -415,7 +415,7 @@ impl Renderer {
         self.draw_transparent(targets, scene, views);
         self.resolve(targets, view, depth, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
         if views.len() == 1 && !direct {
-            self.shine(targets, view, Eye::Left);
+            self.render_bloom(targets, view, Eye::Left);
         }
         Ok(direct)
     }

@@ -60,7 +60,7 @@ pub struct Targets {
     pub inked: Option<RenderTarget>,
     pub bloom: Option<BloomTargets>,
     /// The complete picture of a view, made when first needed.
-    pub developed: Option<RenderTarget>,
+    pub composited: Option<RenderTarget>,
     /// The [detail](super::lit::LitScene::detail) of the view in the targets.
     pub detail: f32,
     /// The depth convention of the view in the targets.
@@ -98,7 +98,7 @@ impl Targets {
             pair: None,
             inked: None,
             bloom: settings.bloom.then(|| BloomTargets::new(gl)).transpose()?,
-            developed: None,
+            composited: None,
             detail: 1.0,
             convention: DepthConvention::Reversed,
             has_depth: false,
@@ -178,7 +178,7 @@ impl Targets {
 
     /// Makes room for the complete picture of a view, and returns it.
     pub fn picture(&mut self, size: [u32; 2]) -> Result<&RenderTarget, GlError> {
-        picture(&self.gl, &mut self.developed, size)
+        picture(&self.gl, &mut self.composited, size)
     }
 
     /// Makes room for a picture with outlines beside the resolved one, and returns it.
