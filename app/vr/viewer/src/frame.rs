@@ -24,7 +24,7 @@ pub enum SceneState {
 
 /// A report on a presented frame, which tells the platform what to do next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameReport {
+pub struct PresentReport {
     /// The state of the scene.
     pub scene: SceneState,
     /// Number of the display's refreshes by which this frame was late.
@@ -41,10 +41,10 @@ pub struct FrameReport {
     pub exit: bool,
 }
 
-impl FrameReport {
+impl PresentReport {
     /// Returns the report for a start screen, which does not count as a frame of the session.
-    pub(crate) fn of_start_screen(scene: SceneState) -> FrameReport {
-        FrameReport {
+    pub(crate) fn of_start_screen(scene: SceneState) -> PresentReport {
+        PresentReport {
             scene,
             late_refreshes: 0,
             gpu_ms: None,

@@ -9,7 +9,7 @@ use super::fence::Fence;
 use super::timewarp::PositionalTimewarp;
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
-use crate::frame::{FrameReport, FrameTiming};
+use crate::frame::{FrameTiming, PresentReport};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, Eye, EyePair, FoveationLevel, Pose};
 use yoro_gl::{Context, Destination, GlError};
@@ -305,7 +305,7 @@ impl Cardboard {
     ///
     /// # Errors
     /// Those of the calls above.
-    pub fn frame(&mut self, window: &Destination, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
+    pub fn frame(&mut self, window: &Destination, timing: &FrameTiming) -> Result<PresentReport, ViewerError> {
         self.render(timing)?;
         self.present(window, timing)
     }
@@ -368,7 +368,7 @@ impl Cardboard {
         &mut self,
         window: &Destination,
         timing: &FrameTiming,
-    ) -> Result<FrameReport, ViewerError> {
+    ) -> Result<PresentReport, ViewerError> {
         let displayed = self.head(timing).1;
         let now = self.eyes(displayed);
         let corner = self.corner();
@@ -376,7 +376,7 @@ impl Cardboard {
         if self.viewer.is_start_screen() {
             self.viewer.draw_start_screen(window);
             attached.presented.set();
-            return Ok(FrameReport::of_start_screen(self.viewer.scene_state()));
+            return Ok(PresentReport::of_start_screen(self.viewer.scene_state()));
         }
         let Attached { images, timewarp, lens, .. } = attached;
         let mut turn = Quat::IDENTITY;

@@ -5,13 +5,13 @@ use glam::Vec3;
 use super::{Attached, Viewer};
 use crate::caption::Status;
 use crate::error::ViewerError;
-use crate::frame::{FrameReport, FrameTiming, SceneState};
+use crate::frame::{FrameTiming, PresentReport, SceneState};
 use yoro::choice::Cost;
 use yoro::eyes::{EyePair, Gaze, StereoViews};
 use yoro_lenses::{Content, Panel, Placement};
 use yoro_gl::{Context, GlError};
 use yoro_render::stereo::{
-    Auto, DepthTarget, EyeTarget, FrameLoad, FrameReport as Rendered, FrameTargets, LayerTargets, StereoFrame,
+    Auto, DepthTarget, EyeTarget, FrameLoad, FrameReport, FrameTargets, LayerTargets, StereoFrame,
     StereoSession,
 };
 use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
@@ -46,11 +46,11 @@ impl Viewer {
     ///
     /// # Errors
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
-    pub fn render(&mut self, views: &StereoViews, targets: FrameTargets) -> Result<Rendered, ViewerError> {
+    pub fn render(&mut self, views: &StereoViews, targets: FrameTargets) -> Result<FrameReport, ViewerError> {
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
         let Some(shown) = self.scene.shown() else {
             show_backdrop(gl, views, targets)?;
-            return Ok(Rendered { has_depth: true, ..Rendered::default() });
+            return Ok(FrameReport { has_depth: true, ..FrameReport::default() });
         };
         shown.move_on(self.now_ns)?;
         let session = self.session.as_mut().ok_or(ViewerError::NoContext)?;
@@ -147,7 +147,7 @@ impl Viewer {
     ///
     /// # Errors
     /// [`ViewerError::NoContext`], and [`ViewerError::Gl`] if a method cannot be recompiled for another quality.
-    pub fn end(&mut self, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
+    pub fn end(&mut self, timing: &FrameTiming) -> Result<PresentReport, ViewerError> {
         let &FrameTiming { now_ns, mut refresh_hz, .. } = timing;
         self.now_ns = now_ns;
         // While a runtime makes every second frame, it may give the period of the display or that of the renders.
@@ -185,7 +185,7 @@ impl Viewer {
             self.stats.end();
         }
         let is_over = self.stats.is_over();
-        Ok(FrameReport {
+        Ok(PresentReport {
             scene,
             late_refreshes,
             gpu_ms,
@@ -212,7 +212,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// Ends a second and returns its log line. Call it when a [`FrameReport`] asks for it, with the device's present
+    /// Ends a second and returns its log line. Call it when a [`PresentReport`] asks for it, with the device's present
     /// state.
     pub fn telemetry(&mut self, now_ns: i64, device: &DeviceState) -> Line {
         self.thermal_headroom = device.thermal_headroom;

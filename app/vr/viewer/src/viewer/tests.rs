@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use super::*;
 use crate::cardboard::{Cardboard, HeldHead};
 use crate::event::{Action, Event};
-use crate::frame::{FrameReport, FrameTiming};
+use crate::frame::{FrameTiming, PresentReport};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
@@ -46,7 +46,7 @@ impl Run {
         Run { viewer, window: window(gl), now_ns: 0 }
     }
 
-    fn frame(&mut self) -> FrameReport {
+    fn frame(&mut self) -> PresentReport {
         self.now_ns += PERIOD_NS;
         let timing = FrameTiming {
             now_ns: self.now_ns,
