@@ -21,13 +21,13 @@ impl<'a> MotionFrame<'a> {
     pub(super) fn new(frame: &'a Frame) -> Option<MotionFrame<'a>> {
         let [left, right] = Eye::BOTH.map(|eye| frame.to(eye).motion.as_ref());
         let targets = [left?, right?];
-        let former = targets.map(|target| target.former);
+        let previous = targets.map(|target| target.previous);
         let depth = frame.written(frame.pair.depth);
         let now = EyePair { size: targets[0].to.size, depth, ..frame.pair };
         let then = EyePair {
-            poses: former.map(|view| view.pose),
-            frusta: former.map(|view| view.frustum),
-            depth: frame.written(former[0].depth),
+            poses: previous.map(|view| view.pose),
+            frusta: previous.map(|view| view.frustum),
+            depth: frame.written(previous[0].depth),
             ..now
         };
         Some(MotionFrame { targets, now, then })

@@ -7,7 +7,7 @@
 
 use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
-use super::over::{OverlayPass, OverlaySurfaces};
+use super::overlay::{OverlayPass, OverlaySurfaces};
 use crate::view::{GpuScene, Layout, Renderer, Reprojection, Targets};
 use yoro::eyes::{DisparityMap, Eye, GuardBand};
 

@@ -6,7 +6,7 @@ use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
 use super::motion::SynthesizedMotion;
 use super::options::{Pipeline, PipelineOptions, StereoOptions};
-use super::over::{OverlayPass, OverlaySurfaces};
+use super::overlay::{OverlayPass, OverlaySurfaces};
 use super::pipeline::Synthesis;
 use crate::view::{DepthResolve, GpuScene, Layout, Renderer, Selection, Targets};
 use yoro::eyes::{Eye, EyePair};

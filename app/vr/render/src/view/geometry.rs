@@ -11,9 +11,9 @@ use super::uniforms::{depth_test, eye_to_clip};
 use yoro::eyes::{DepthRange, Eye, View};
 use yoro_gl::{Blend, Context, GlError, Program, RasterState, ShaderSource};
 
-/// A part of the opaque triangles.
+/// Which of the opaque triangles are drawn.
 #[derive(Clone, Copy)]
-pub enum Part<'a> {
+pub enum Surfaces<'a> {
     /// Clusters that a culler lets through, for one view.
     Selected(&'a Culler),
     /// Surfaces between two distances in metres, drawn at the same depth as in the whole view.
@@ -140,14 +140,14 @@ impl GeometryPass {
     }
 
     /// Draws into an image of the pass's layout: one view, or both eyes, which must have the same size and depth range.
-    pub fn draw(&self, scene: &GpuScene, views: &[View], part: &Part) {
+    pub fn draw(&self, scene: &GpuScene, views: &[View], surfaces: &Surfaces) {
         let Some(first) = views.first() else { return };
-        match *part {
-            Part::Selected(culler) => {
+        match *surfaces {
+            Surfaces::Selected(culler) => {
                 let eyes = Eyes::new(self.variant.layout, &[*first; 2]);
                 self.draw_culled(scene, first, std::slice::from_ref(culler), &eyes, [0.0, 1.0]);
             }
-            Part::Slice([near, far]) => {
+            Surfaces::Slice([near, far]) => {
                 let depth = DepthRange { near, far, ..first.depth };
                 let sliced: [View; 2] =
                     std::array::from_fn(|i| View { depth, ..*views.get(i).unwrap_or(first) });

@@ -5,7 +5,7 @@ use glam::{IVec2, Mat3, Vec2, Vec3};
 use super::bloom::Shining;
 use super::cluster::{Culler, Selection};
 use super::depth::DepthImage;
-use super::geometry::{Part, Variant};
+use super::geometry::{Surfaces, Variant};
 use super::layout::Layout;
 use super::light_tiles::LightTiles;
 use super::lights::Lights;
@@ -89,8 +89,8 @@ impl Renderer {
     }
 
     /// Clears the targets, and draws a part of the scene and the sky behind it.
-    pub(super) fn draw_on_sky(&self, targets: &mut Targets, scene: &LitScene, views: &[View], part: &Part) {
-        self.draw_on_sky_as(targets, scene, views, part, None);
+    pub(super) fn draw_on_sky(&self, targets: &mut Targets, scene: &LitScene, views: &[View], surfaces: &Surfaces) {
+        self.draw_on_sky_as(targets, scene, views, surfaces, None);
     }
 
     /// Like [`Renderer::draw_on_sky`]; takes the dominant eye's colours where it sees the surface.
@@ -99,7 +99,7 @@ impl Renderer {
         targets: &mut Targets,
         scene: &LitScene,
         views: &[View],
-        part: &Part,
+        surfaces: &Surfaces,
         from: Option<&Reprojection>,
     ) {
         let view = &views[0];
@@ -112,7 +112,7 @@ impl Renderer {
             targets.bind(targets.layout().texture_size(view.size));
             self.gl.clear(Some(view.depth.clear_value()));
             let variant = Variant { reprojected: from.is_some(), ..Renderer::variant(targets) };
-            self.draw_opaque(variant, &light, views, part, |program| {
+            self.draw_opaque(variant, &light, views, surfaces, |program| {
                 if let Some(from) = from {
                     set_reprojection(program, from, view);
                 }
@@ -127,7 +127,7 @@ impl Renderer {
         variant: Variant,
         light: &Illumination,
         views: &[View],
-        part: &Part,
+        surfaces: &Surfaces,
         more: impl Fn(&Program),
     ) {
         let Some(pass) = self.geometry.iter().find(|pass| pass.variant() == variant) else { return };
@@ -135,7 +135,7 @@ impl Renderer {
             light.set(program.bind());
             more(program);
         });
-        pass.draw(light.scene, views, part);
+        pass.draw(light.scene, views, surfaces);
     }
 
     /// Draws the sky where nothing was drawn.
@@ -181,7 +181,7 @@ impl Renderer {
         if let Some(near) = near {
             let culler = Culler::selecting(view, near);
             light.declare(self.gl.pass("near objects")).run(|| {
-                self.draw_opaque(variant, &light, views, &Part::Selected(&culler), |_| {});
+                self.draw_opaque(variant, &light, views, &Surfaces::Selected(&culler), |_| {});
             });
         }
         if scene.has_transparent() {
@@ -472,7 +472,7 @@ impl Renderer {
         slice: [f32; 2],
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
-        self.draw_on_sky(targets, scene, &[*view], &Part::Slice(slice));
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Slice(slice));
         self.resolve(targets, view, true, false, None)
     }
 
@@ -494,7 +494,7 @@ impl Renderer {
             let to = targets.destination(view.size);
             self.load(far, far_view, crop, targets, &to);
             if let Some(slice) = slice {
-                self.draw_opaque(Renderer::variant(targets), &light, views, &Part::Slice(slice), |_| {});
+                self.draw_opaque(Renderer::variant(targets), &light, views, &Surfaces::Slice(slice), |_| {});
             }
         });
         self.draw_transparent(targets, scene, views);
@@ -513,7 +513,7 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
         let culler = Culler::of_view(view);
-        self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler));
         self.resolve(targets, view, true, false, None)
     }
 
@@ -528,7 +528,7 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(depth), None)?;
         let culler = Culler::of_view(view);
-        self.draw_on_sky_as(targets, scene, &[*view], &Part::Selected(&culler), Some(from));
+        self.draw_on_sky_as(targets, scene, &[*view], &Surfaces::Selected(&culler), Some(from));
         self.draw_transparent(targets, scene, std::slice::from_ref(view));
         self.resolve(targets, view, depth, self.ink, None)?;
         self.render_bloom(targets, view, Eye::Left);

@@ -11,7 +11,7 @@ use super::bloom::{self, BloomPass};
 use super::carry::CarryPass;
 use super::cluster::{Culler, Selection};
 use super::depth::{DepthImage, DepthResolve};
-use super::geometry::{GeometryPass, Part, Variant};
+use super::geometry::{GeometryPass, Surfaces, Variant};
 use super::layout::Layout;
 use super::lights::Lights;
 use super::lit::LitScene;
@@ -35,7 +35,7 @@ pub struct Renderer {
     pub(super) shadow: Option<ShadowMap>,
     /// True if the style has outlines, which compare samples with their neighbours.
     pub(super) ink: bool,
-    pub(super) way: DepthResolve,
+    pub(super) depth_resolve: DepthResolve,
     /// The defines of `include/shade.glsl`.
     shading: Vec<(&'static str, String)>,
     pub(super) geometry: Vec<GeometryPass>,
@@ -121,12 +121,12 @@ impl Renderer {
     pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Renderer, GlError> {
         settings.supported(gl.capabilities())?;
         let ink = scene.style == ShadingStyle::Anime;
-        let mut way = DepthResolve::best(gl, settings.msaa, ink);
+        let mut depth_resolve = DepthResolve::best(gl, settings.msaa, ink);
         let mut carry = None;
-        if way == DepthResolve::InColor {
+        if depth_resolve == DepthResolve::InColor {
             match CarryPass::new(gl, settings.msaa)? {
                 Some(pass) => carry = Some(pass),
-                None => way = DepthResolve::SingleSample,
+                None => depth_resolve = DepthResolve::SingleSample,
             }
         }
         let has_shadow = scene.has_sun() && settings.shadow_map_size > 0;
@@ -136,7 +136,7 @@ impl Renderer {
             scene_id: scene.id,
             shadow: has_shadow.then(|| ShadowMap::new(gl, scene, settings.shadow_map_size)).transpose()?,
             ink,
-            way,
+            depth_resolve,
             shading: shading_defines(scene, settings),
             geometry: Vec::new(),
             transparent: TransparentPass::new(gl, scene),
@@ -200,12 +200,12 @@ impl Renderer {
     /// Returns the targets, or new ones if those were made for other settings.
     fn fitting<'a>(&self, made: &'a mut ViewTargets, scene: &GpuScene) -> Result<&'a mut Targets, GlError> {
         self.check_scene(scene)?;
-        let fits = |(settings, way, _): &(RenderSettings, DepthResolve, Targets)| {
-            *settings == self.settings && *way == self.way
+        let fits = |(settings, depth_resolve, _): &(RenderSettings, DepthResolve, Targets)| {
+            *settings == self.settings && *depth_resolve == self.depth_resolve
         };
         let fitting = match made.0.take().filter(fits) {
             Some(fitting) => fitting,
-            None => (self.settings.clone(), self.way, self.targets(Layout::Single)?),
+            None => (self.settings.clone(), self.depth_resolve, self.targets(Layout::Single)?),
         };
         Ok(&mut made.0.insert(fitting).2)
     }
@@ -236,12 +236,12 @@ impl Renderer {
 
     /// Makes targets, to be fitted to each view that is rendered.
     pub(crate) fn targets(&self, layout: Layout) -> Result<Targets, GlError> {
-        Targets::new(&self.gl, layout, &self.settings, self.way)
+        Targets::new(&self.gl, layout, &self.settings, self.depth_resolve)
     }
 
     /// Returns how the nearest depth of views is had.
     pub fn nearest_depth(&self) -> DepthResolve {
-        self.way
+        self.depth_resolve
     }
 
     /// Returns the number of samples in each pixel.
@@ -265,11 +265,11 @@ impl Renderer {
         let samples = if layer { 1 } else { self.settings.msaa };
         let plain = Variant { layout, ..Variant::plain(samples) };
         self.prepare_variant(scene, plain)?;
-        if self.way == DepthResolve::InColor && !layer {
+        if self.depth_resolve == DepthResolve::InColor && !layer {
             self.prepare_variant(scene, Variant { carried: true, ..plain })?;
         }
-        let samples = if self.way == DepthResolve::Samples && !layer { self.settings.msaa } else { 1 };
-        if self.ink || self.way == DepthResolve::Samples {
+        let samples = if self.depth_resolve == DepthResolve::Samples && !layer { self.settings.msaa } else { 1 };
+        if self.ink || self.depth_resolve == DepthResolve::Samples {
             self.prepare_resolve(Resolve { samples, ink: self.ink, depth: samples > 1, layer })?;
         }
         if self.bloom.is_some() || layer {
@@ -282,7 +282,7 @@ impl Renderer {
     /// it with its depth.
     pub(crate) fn prepare_over(&mut self, scene: &GpuScene) -> Result<(), GlError> {
         self.prepare_variant(scene, Variant::plain(1))?;
-        let depth = Some(self.way == DepthResolve::InColor);
+        let depth = Some(self.depth_resolve == DepthResolve::InColor);
         let plain = Composite { bloom: self.bloom.is_some(), ..Composite::default() };
         self.prepare_composite(plain)?;
         self.prepare_composite(Composite { depth, ..plain })
@@ -292,7 +292,7 @@ impl Renderer {
     /// outlines.
     pub(crate) fn prepare_load(&mut self) -> Result<(), GlError> {
         self.prepare_raw()?;
-        let carried = self.way == DepthResolve::InColor;
+        let carried = self.depth_resolve == DepthResolve::InColor;
         for carries in [false, true].into_iter().take(1 + usize::from(carried)) {
             let carries = if carries { self.settings.msaa } else { 0 };
             self.prepare_composite(Composite { depth: Some(carried), carries, ..Composite::default() })?;
@@ -302,7 +302,7 @@ impl Renderer {
 
     /// Compiles the resolve of a view without outlines.
     pub(crate) fn prepare_raw(&mut self) -> Result<(), GlError> {
-        if self.way == DepthResolve::Samples {
+        if self.depth_resolve == DepthResolve::Samples {
             let samples = self.settings.msaa;
             self.prepare_resolve(Resolve { samples, ink: false, depth: true, layer: false })?;
         }
@@ -312,7 +312,7 @@ impl Renderer {
     /// Compiles the programs that take the dominant eye's colours.
     pub(crate) fn prepare_reprojected(&mut self, scene: &GpuScene) -> Result<(), GlError> {
         let plain = Variant::plain(self.settings.msaa);
-        if self.way == DepthResolve::InColor {
+        if self.depth_resolve == DepthResolve::InColor {
             self.prepare_variant(scene, Variant { reprojected: true, carried: true, ..plain })?;
         }
         self.prepare_variant(scene, Variant { reprojected: true, ..plain })
@@ -326,7 +326,7 @@ impl Renderer {
         let mut shading = self.shading.clone();
         shading.extend((variant.samples > 1).then(|| ("MULTISAMPLE", String::new())));
         shading.extend(self.ink.then(|| ("INK", String::new())));
-        if variant.reprojected && self.way == DepthResolve::InColor {
+        if variant.reprojected && self.depth_resolve == DepthResolve::InColor {
             shading.push(("DEPTH_PAIRS", String::new()));
         }
         self.geometry.push(GeometryPass::new(gl, scene, variant, &shading)?);
@@ -387,7 +387,7 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
         let culler = Culler::selecting(view, selection);
-        self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler));
         self.resolve(targets, view, true, self.ink, None)?;
         self.render_bloom(targets, view, Eye::Left);
         Ok(())
@@ -407,11 +407,11 @@ impl Renderer {
         let to = to.filter(|_| !self.has_composite() && !self.ink);
         let direct = targets.fit(view, scene.detail(view), self.needs(depth), to)?;
         let culler = Culler::of_view(view);
-        let part = match views.len() {
-            1 => Part::Selected(&culler),
-            _ => Part::Slice([view.depth.near, view.depth.far]),
+        let surfaces = match views.len() {
+            1 => Surfaces::Selected(&culler),
+            _ => Surfaces::Slice([view.depth.near, view.depth.far]),
         };
-        self.draw_on_sky(targets, scene, views, &part);
+        self.draw_on_sky(targets, scene, views, &surfaces);
         self.draw_transparent(targets, scene, views);
         self.resolve(targets, view, depth, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
         if views.len() == 1 && !direct {
@@ -422,6 +422,6 @@ impl Renderer {
 
     /// Returns what a view needs whose depth is read or not.
     pub(super) fn needs(&self, depth: bool) -> Needs {
-        Needs { depth, samples: self.way == DepthResolve::Samples && (depth || self.ink) }
+        Needs { depth, samples: self.depth_resolve == DepthResolve::Samples && (depth || self.ink) }
     }
 }

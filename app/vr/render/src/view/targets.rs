@@ -43,7 +43,7 @@ pub struct Targets {
     gl: Rc<Context>,
     layout: Layout,
     samples: u32,
-    way: DepthResolve,
+    depth_resolve: DepthResolve,
     /// Samples outside tiles, and whether they carry depth.
     multisample: Option<(MultisampleTarget, bool)>,
     /// Samples in tiles; `None` if the driver cannot keep them there.
@@ -52,7 +52,7 @@ pub struct Targets {
     /// True if the current view carries depth in a second colour.
     carries: bool,
     needs: Needs,
-    /// Average colour and, depending on the way, nearest depth.
+    /// Average colour and, depending on the depth_resolve, nearest depth.
     pub resolved: RenderTarget,
     /// The depth of two samples, made when first needed.
     pair: Option<RenderTarget>,
@@ -75,7 +75,7 @@ impl Targets {
         gl: &Rc<Context>,
         layout: Layout,
         settings: &RenderSettings,
-        way: DepthResolve,
+        depth_resolve: DepthResolve,
     ) -> Result<Targets, GlError> {
         let samples = if layout == Layout::Layered { 1 } else { settings.msaa };
         let size = layout.texture_size([1, 1]);
@@ -88,7 +88,7 @@ impl Targets {
             gl: gl.clone(),
             layout,
             samples,
-            way: if samples == 1 { DepthResolve::None } else { way },
+            depth_resolve: if samples == 1 { DepthResolve::None } else { depth_resolve },
             multisample: None,
             tile: tile.transpose()?,
             onto: Onto::Resolved,
@@ -126,7 +126,7 @@ impl Targets {
             return Ok(false);
         }
         let is_reversed = view.depth.convention == DepthConvention::Reversed;
-        let carries = needs.depth && self.way == DepthResolve::InColor && is_reversed;
+        let carries = needs.depth && self.depth_resolve == DepthResolve::InColor && is_reversed;
         self.carries = carries;
         if carries {
             if self.pair.is_none() {
@@ -140,11 +140,11 @@ impl Targets {
             return Ok(to.is_some_and(|to| to.texture.is_some()) && !carries);
         }
         self.onto = Onto::Samples;
-        let readable = self.way == DepthResolve::Samples;
+        let readable = self.depth_resolve == DepthResolve::Samples;
         match &mut self.multisample {
             Some((samples, carried)) if *carried == carries => samples.resize(whole)?,
             slot => {
-                // The former samples are deleted first.
+                // The previous samples are deleted first.
                 *slot = None;
                 let colors = &[Format::Rgba8, Format::Rg16F][..1 + usize::from(carries)];
                 let samples =

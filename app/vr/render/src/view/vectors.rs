@@ -15,7 +15,7 @@ use yoro_gl::{
 };
 
 /// Writes motion vectors and depth of a view, whose size need not be that of the rendered image: normalized device
-/// coordinates minus those of the former frame.
+/// coordinates minus those of the previous frame.
 ///
 /// Sky and still surfaces have those of depth and poses. Moving surfaces are drawn, from the vertices that they have and
 /// those that they had before the scene's time last changed.
@@ -133,7 +133,7 @@ impl VectorPass {
     }
 }
 
-/// Sets where a pixel's depth and former place are.
+/// Sets where a pixel's depth and previous place are.
 fn set_places(program: &Program, (depth, rendered): (&DepthImage, &View), step: &Step) {
     let Step { view, now, then, .. } = step;
     let pair = |[x, y]: [u32; 2]| Vec2::new(x as f32, y as f32);
@@ -155,7 +155,7 @@ fn set_places(program: &Program, (depth, rendered): (&DepthImage, &View), step: 
         .set("to_previous", to_previous(now, then));
 }
 
-/// Returns the matrix from normalized device coordinates x and y, 1, and inverse distance to the former frame's clip space.
+/// Returns the matrix from normalized device coordinates x and y, 1, and inverse distance to the previous frame's clip space.
 fn to_previous(now: &View, then: &View) -> Mat4 {
     let f = &now.frustum;
     // The ray through a place in the image, at distance 1.
@@ -165,7 +165,7 @@ fn to_previous(now: &View, then: &View) -> Mat4 {
         Vec4::new((f.left + f.right) / 2.0, (f.bottom + f.top) / 2.0, -1.0, 0.0),
         Vec4::ZERO,
     );
-    let mut from_former_eye = Mat4::from_quat(now.pose.orientation) * rays;
-    from_former_eye.w_axis = (now.pose.position - then.pose.position).extend(1.0);
-    eye_to_clip(then) * from_former_eye
+    let mut from_previous_eye = Mat4::from_quat(now.pose.orientation) * rays;
+    from_previous_eye.w_axis = (now.pose.position - then.pose.position).extend(1.0);
+    eye_to_clip(then) * from_previous_eye
 }

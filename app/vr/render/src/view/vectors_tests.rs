@@ -119,7 +119,7 @@ fn check(
     let (to_world, to_eye, then) = (to_clip(now).inverse(), to_clip(eye), to_clip(then));
     let step = seconds - before;
     // Where a surface that is seen was: still, the cube, the fence.
-    let former = |world: DVec3, i: usize| match i {
+    let previous = |world: DVec3, i: usize| match i {
         0 => world,
         1 => world - CUBE_VELOCITY.as_dvec3() * step,
         _ => DQuat::from_rotation_y(-FENCE_TURN * step) * world,
@@ -132,7 +132,7 @@ fn check(
         let Some(world) = project(to_world, here) else { continue };
         let moves = got[i][3] == 1.0;
         let off = |k: usize| {
-            let was = project(then, former(world, k)).unwrap();
+            let was = project(then, previous(world, k)).unwrap();
             let mut want = project(to_eye, world).unwrap() - was;
             if *ndc == Ndc::MinusOneToOne {
                 want.z *= 2.0;
