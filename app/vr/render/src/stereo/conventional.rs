@@ -27,7 +27,7 @@ impl Conventional {
     fn make(&mut self, renderer: &Renderer) -> Result<(), GlError> {
         if self.targets.is_none() {
             self.targets = Some(renderer.targets(Layout::Single)?);
-            let is_pair = renderer.nearest_depth() == DepthResolve::InColor;
+            let is_pair = renderer.depth_resolve == DepthResolve::InColor;
             self.vectors = self.has_vectors.then(|| VectorPass::new(&renderer.gl, is_pair)).transpose()?;
         }
         Ok(())

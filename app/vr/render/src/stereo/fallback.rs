@@ -51,7 +51,7 @@ impl Fallback {
 
     /// Compiles what depends on the renderer.
     pub(super) fn prepare(&mut self, renderer: &Renderer) -> Result<(), GlError> {
-        let is_pair = renderer.nearest_depth() == DepthResolve::InColor;
+        let is_pair = renderer.depth_resolve == DepthResolve::InColor;
         self.near.as_mut().map_or(Ok(()), |near| near.fraction.prepare(is_pair))
     }
 

@@ -91,7 +91,7 @@ impl SynthesizedMotion {
             other => other,
         };
         let views = [motion.now, motion.then]
-            .map(|eyes| ViewLayer { eyes, ..*frame.layer() }.synthesis_views(guard_band));
+            .map(|eyes| ViewLayer { eyes, ..frame.layer }.synthesis_views(guard_band));
         let [Ok(now), Ok(then)] = views else { return Ok(false) };
         let ndc = motion.targets[dominant.other().index()].ndc;
         let warp = match now.motion(&then, VectorSpace { ndc, of: VectorsOf::Eye }) {

@@ -130,7 +130,7 @@ fn frames_of_half_the_rate_compile_and_allocate_nothing() {
         let gl = head.gl();
         let settings = RenderSettings { msaa: 4, ..local() };
         let mut rig = Rig::of(gl, &settings, moving_scene());
-        assert_eq!(rig.scene().renderer.nearest_depth(), way);
+        assert_eq!(rig.scene().renderer.depth_resolve, way);
         let eyes = pair(Eye::Right, DepthConvention::Reversed);
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         let vectors = RenderTarget::new(gl, SIZE, &formats, Some(Format::Depth32F)).unwrap();

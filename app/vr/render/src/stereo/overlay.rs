@@ -68,7 +68,7 @@ enum OverlayTarget {
 impl OverlayPass {
     /// Makes it without images.
     pub(super) fn new(renderer: &Renderer) -> Result<OverlayPass, GlError> {
-        let (gl, samples) = (&renderer.gl, renderer.samples());
+        let (gl, samples) = (&renderer.gl, renderer.settings.msaa);
         let tile = (samples > 1 && gl.capabilities().tile_samples).then(|| TileTarget::new(gl, samples));
         Ok(OverlayPass {
             gl: gl.clone(),

@@ -137,7 +137,7 @@ impl StereoSession {
             && match self.options.frame_rate {
                 FrameRate::Full => false,
                 FrameRate::Half => true,
-                FrameRate::Auto => self.rate.is_half(),
+                FrameRate::Auto => self.rate.is_half,
             }
     }
 
@@ -302,7 +302,7 @@ impl StereoSession {
             && self.options.frame_rate == FrameRate::Auto
             && self.rate.frame(load)
         {
-            let which = if self.rate.is_half() { "every second frame" } else { "every frame" };
+            let which = if self.rate.is_half { "every second frame" } else { "every frame" };
             log::info!("frame-rate: {which} is rendered");
         }
     }

@@ -86,8 +86,8 @@ impl StereoMethod for Synthesized {
     fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
         let has_over = scene.has_transparent() || self.options.near_field.is_some();
         renderer.prepare_over(scene)?;
-        let pairs = renderer.nearest_depth() == DepthResolve::InColor;
-        let is_first = renderer.nearest_depth() == DepthResolve::SingleSample;
+        let pairs = renderer.depth_resolve == DepthResolve::InColor;
+        let is_first = renderer.depth_resolve == DepthResolve::SingleSample;
         let made = match &mut self.made {
             Some(made) => made,
             slot => slot.insert(Made {

@@ -100,7 +100,7 @@ pub type Programs = [Option<Program>; Features::COMBINATIONS];
 /// the material's maps and the shadow map.
 pub struct GeometryPass {
     gl: Rc<Context>,
-    variant: Variant,
+    pub variant: Variant,
     /// True if cut-out materials cover samples by their alpha.
     alpha_to_coverage: bool,
     programs: Programs,
@@ -127,11 +127,6 @@ impl GeometryPass {
             }
         }
         Ok(GeometryPass { gl: gl.clone(), variant, alpha_to_coverage: variant.samples > 1, programs })
-    }
-
-    /// Returns the variant of the programs.
-    pub fn variant(&self) -> Variant {
-        self.variant
     }
 
     /// Returns all programs, for uniforms that are the same in all of them.

@@ -84,8 +84,8 @@ impl Renderer {
     }
 
     fn variant(targets: &Targets) -> Variant {
-        let (layout, samples) = (targets.layout(), targets.sample_count());
-        Variant { layout, carried: targets.carries(), ..Variant::plain(samples) }
+        let (layout, samples) = (targets.layout, targets.samples);
+        Variant { layout, carried: targets.carries, ..Variant::plain(samples) }
     }
 
     /// Clears the targets, and draws a part of the scene and the sky behind it.
@@ -103,13 +103,13 @@ impl Renderer {
         from: Option<&Reprojection>,
     ) {
         let view = &views[0];
-        let light = self.illuminate(targets.layout(), scene, views);
+        let light = self.illuminate(targets.layout, scene, views);
         let mut pass = targets.declare(light.declare(self.gl.pass("surfaces")));
         if let Some(from) = from {
             pass = pass.read("dominant_color", from.color).read("depth_map", from.depth);
         }
         pass.run(|| {
-            targets.bind(targets.layout().texture_size(view.size));
+            targets.bind(targets.layout.texture_size(view.size));
             self.gl.clear(Some(view.depth.clear_value()));
             let variant = Variant { reprojected: from.is_some(), ..Renderer::variant(targets) };
             self.draw_opaque(variant, &light, views, surfaces, |program| {
@@ -130,7 +130,7 @@ impl Renderer {
         surfaces: &Surfaces,
         more: impl Fn(&Program),
     ) {
-        let Some(pass) = self.geometry.iter().find(|pass| pass.variant() == variant) else { return };
+        let Some(pass) = self.geometry.iter().find(|pass| pass.variant == variant) else { return };
         pass.programs().for_each(|program| {
             light.set(program.bind());
             more(program);
@@ -142,7 +142,7 @@ impl Renderer {
     fn draw_sky(&self, targets: &Targets, light: &Illumination, views: &[View]) {
         let variant = Renderer::variant(targets);
         let Some((_, program)) = self.skies.iter().find(|(made, _)| *made == variant) else { return };
-        let layout = targets.layout();
+        let layout = targets.layout;
         // With multiview, one triangle is drawn for both eyes.
         let rays: [Mat3; 2] = std::array::from_fn(|i| view_rays(views.get(i).unwrap_or(&views[0])));
         let drawn = if layout == Layout::Layered { 1 } else { views.len() };
@@ -167,7 +167,7 @@ impl Renderer {
     /// Draws the transparent surfaces over what is in the targets.
     pub(super) fn draw_transparent(&self, targets: &Targets, scene: &LitScene, views: &[View]) {
         if scene.has_transparent() {
-            let light = self.illuminate(targets.layout(), scene, views);
+            let light = self.illuminate(targets.layout, scene, views);
             self.transparent.run(Renderer::variant(targets), scene, views, &light);
         }
     }
@@ -199,25 +199,25 @@ impl Renderer {
         ink: bool,
         to: Option<&Destination>,
     ) -> Result<(), GlError> {
-        match targets.onto() {
+        match targets.onto {
             Onto::Resolved if !depth && !ink => targets.resolved.discard_depth(),
             Onto::Resolved => {}
             Onto::Tile => {
-                if targets.carries()
+                if targets.carries
                     && let Some(carry) = &self.carry
                 {
                     self.gl.pass("carry").run(|| carry.run());
                 }
-                if let Some(tile) = targets.tile() {
+                if let Some(tile) = &targets.tile {
                     tile.discard_depth();
                 }
             }
             Onto::Samples => self.resolve_samples(targets, view, depth, ink, to),
         }
         targets.has_depth = depth;
-        let is_drawn = targets.onto() == Onto::Samples && self.reads(targets);
+        let is_drawn = targets.onto == Onto::Samples && self.reads(targets);
         // An array's outlines are drawn eye by eye.
-        if ink && !is_drawn && targets.layout() != Layout::Layered {
+        if ink && !is_drawn && targets.layout != Layout::Layered {
             targets.ink_picture()?;
             self.draw_ink(targets, view, Eye::Left);
         }
@@ -226,7 +226,7 @@ impl Renderer {
 
     /// Draws the outlines of an eye that is a layer of the targets, if the style has outlines.
     pub(crate) fn ink_layer(&self, targets: &mut Targets, view: &View, eye: Eye) -> Result<(), GlError> {
-        if self.ink && targets.layout() == Layout::Layered {
+        if self.ink && targets.layout == Layout::Layered {
             targets.ink_picture()?;
             self.draw_ink(targets, view, eye);
         }
@@ -251,14 +251,14 @@ impl Renderer {
             self.read_samples(targets, view, ink, &targets.resolved);
             return;
         }
-        if targets.carries()
+        if targets.carries
             && let Some(carry) = &self.carry
         {
             self.gl.pass("carry").run(|| carry.run());
         }
         let whole = Destination::whole(&targets.resolved);
         let to = to.unwrap_or(&whole);
-        let pair = targets.pair().filter(|_| targets.carries());
+        let pair = targets.pair.as_ref().filter(|_| targets.carries);
         let nearest = match pair {
             Some(pair) => Some(pair.color(0)),
             None => (depth || ink).then(|| targets.resolved.depth()),
@@ -300,7 +300,7 @@ impl Renderer {
 
     /// Draws outlines over the resolved picture, or over one of its layers, into another one.
     fn draw_ink(&self, targets: &Targets, view: &View, eye: Eye) {
-        let layer = targets.layout() == Layout::Layered;
+        let layer = targets.layout == Layout::Layered;
         let variant = Resolve { samples: 1, ink: true, depth: false, layer };
         let (Some((_, program)), Some(inked)) =
             (self.resolve.iter().find(|(made, _)| *made == variant), &targets.inked)
@@ -336,7 +336,7 @@ impl Renderer {
 
     /// Draws `render/resolve.frag` for each eye of an image, or for one layer.
     fn draw_resolve(&self, program: &Program, targets: &Targets, view: &View, layer: Option<Eye>) {
-        let layout = targets.layout();
+        let layout = targets.layout;
         let outlines = Outlines::of(view, targets.detail);
         let vector = |v: [u32; 2]| IVec2::from(v.map(|n| n as i32));
         program
@@ -364,7 +364,7 @@ impl Renderer {
             let shining = Shining {
                 picture: targets.color().color(0),
                 layer: targets.color_layer(eye),
-                origin: targets.layout().origin(view.size, eye),
+                origin: targets.layout.origin(view.size, eye),
                 size: view.size,
             };
             pass.run(bloom, &shining, self.settings.exposure);
@@ -388,7 +388,7 @@ impl Renderer {
 
     /// Writes a part of an image and its depth, without bloom, into other targets.
     fn load(&self, from: &Targets, view: &View, crop: [u32; 2], targets: &Targets, to: &Destination) {
-        let carries = if targets.carries() { targets.sample_count() } else { 0 };
+        let carries = if targets.carries { targets.samples } else { 0 };
         let kind = Composite { carries, ..Composite::default() };
         self.composite_as(from, view, Eye::Left, crop, to, Some(Rectangle::whole(to.size)), kind);
     }
@@ -407,7 +407,7 @@ impl Renderer {
         // Outlines of an array's eye are in a picture of its own.
         let layer = targets.color_layer(eye);
         let is_alone = targets.layer(eye).is_some() && layer.is_none();
-        let corner = if is_alone { [0, 0] } else { targets.layout().origin(view.size, eye) };
+        let corner = if is_alone { [0, 0] } else { targets.layout.origin(view.size, eye) };
         let bloom = targets.bloom.as_ref().filter(|_| kind.bloom);
         if depth.is_none() && bloom.is_none() && layer.is_none() {
             let from = [0, 1].map(|i| corner[i] + crop[i]);

@@ -30,12 +30,13 @@ use yoro_gl::{Context, Destination, GlError, Program, RenderTarget, ShaderSource
 /// frame of the scene or in [`crate::stereo::StereoMethod::prepare`]. Nothing is compiled or allocated after that.
 pub struct Renderer {
     pub(crate) gl: Rc<Context>,
-    pub(super) settings: RenderSettings,
+    pub(crate) settings: RenderSettings,
     scene_id: u64,
     pub(super) shadow: Option<ShadowMap>,
     /// True if the style has outlines, which compare samples with their neighbours.
     pub(super) ink: bool,
-    pub(super) depth_resolve: DepthResolve,
+    /// How the nearest depth of views is had.
+    pub(crate) depth_resolve: DepthResolve,
     /// The defines of `include/shade.glsl`.
     shading: Vec<(&'static str, String)>,
     pub(super) geometry: Vec<GeometryPass>,
@@ -239,16 +240,6 @@ impl Renderer {
         Targets::new(&self.gl, layout, &self.settings, self.depth_resolve)
     }
 
-    /// Returns how the nearest depth of views is had.
-    pub fn nearest_depth(&self) -> DepthResolve {
-        self.depth_resolve
-    }
-
-    /// Returns the number of samples in each pixel.
-    pub(crate) fn samples(&self) -> u32 {
-        self.settings.msaa
-    }
-
     /// True if bloom is added to the average of the samples.
     pub(crate) fn has_composite(&self) -> bool {
         self.bloom.is_some()
@@ -319,7 +310,7 @@ impl Renderer {
     }
 
     fn prepare_variant(&mut self, scene: &GpuScene, variant: Variant) -> Result<(), GlError> {
-        if self.geometry.iter().any(|pass| pass.variant() == variant) {
+        if self.geometry.iter().any(|pass| pass.variant == variant) {
             return Ok(());
         }
         let gl = &self.gl;

@@ -41,21 +41,24 @@ pub enum Onto {
 /// 4 of a complete picture where somebody reads it as a texture.
 pub struct Targets {
     gl: Rc<Context>,
-    layout: Layout,
-    samples: u32,
+    /// Which views the targets hold.
+    pub layout: Layout,
+    /// The number of samples in each pixel of what is drawn.
+    pub samples: u32,
     depth_resolve: DepthResolve,
     /// Samples outside tiles, and whether they carry depth.
     multisample: Option<(MultisampleTarget, bool)>,
     /// Samples in tiles; `None` if the driver cannot keep them there.
-    tile: Option<TileTarget>,
-    onto: Onto,
+    pub tile: Option<TileTarget>,
+    /// The framebuffer of the current view.
+    pub onto: Onto,
     /// True if the current view carries depth in a second colour.
-    carries: bool,
+    pub carries: bool,
     needs: Needs,
     /// Average colour and, depending on the depth_resolve, nearest depth.
     pub resolved: RenderTarget,
     /// The depth of two samples, made when first needed.
-    pair: Option<RenderTarget>,
+    pub pair: Option<RenderTarget>,
     /// The picture with outlines, where they are drawn beside the resolved one.
     pub inked: Option<RenderTarget>,
     pub bloom: Option<BloomTargets>,
@@ -201,39 +204,9 @@ impl Targets {
         }
     }
 
-    /// Returns which views the targets hold.
-    pub fn layout(&self) -> Layout {
-        self.layout
-    }
-
-    /// Returns the framebuffer of the current view.
-    pub fn onto(&self) -> Onto {
-        self.onto
-    }
-
-    /// True if the current view carries depth in a second colour.
-    pub fn carries(&self) -> bool {
-        self.carries
-    }
-
     /// Returns the samples outside tiles.
     pub fn multisample(&self) -> Option<&MultisampleTarget> {
         self.multisample.as_ref().map(|(samples, _)| samples)
-    }
-
-    /// Returns the samples in tiles.
-    pub fn tile(&self) -> Option<&TileTarget> {
-        self.tile.as_ref()
-    }
-
-    /// Returns the target of the depth of two samples.
-    pub fn pair(&self) -> Option<&RenderTarget> {
-        self.pair.as_ref()
-    }
-
-    /// Returns the number of samples in each pixel of what is drawn.
-    pub fn sample_count(&self) -> u32 {
-        self.samples
     }
 
     /// Returns the lower left part, of this size, of the image that is drawn into.

@@ -38,7 +38,7 @@ const FASTER: f64 = 6.0;
 /// The rate at which bytes may be sent.
 #[derive(Clone, Debug)]
 pub struct Rate {
-    bytes_per_second: f64,
+    pub bytes_per_second: f64,
     /// Sending, arrival (in s, each by the clock of its side) and bytes of the newest frames that have arrived.
     arrivals: VecDeque<[f64; 3]>,
     /// Mean and relative variance of what arrived when queues grew.
@@ -66,11 +66,6 @@ impl Default for Rate {
 }
 
 impl Rate {
-    /// Returns the rate in bytes/s.
-    pub fn bytes_per_second(&self) -> f64 {
-        self.bytes_per_second
-    }
-
     /// Notes a frame that has arrived: its times in s, and its bytes.
     pub fn arrived(&mut self, sent: f64, arrived: f64, bytes: f64) {
         // A frame that was overtaken counts when it is noted.

@@ -74,7 +74,7 @@ pub struct Trend {
     /// the present one's begin.
     delays: VecDeque<[f64; 2]>,
     /// The mean difference between the delays of two frames in ms.
-    noise: f64,
+    pub noise: f64,
     least: [f64; 2],
     window_start: f64,
 }
@@ -134,11 +134,6 @@ impl Trend {
     /// True if the newest frame was delayed by far more than the fastest.
     pub fn is_stalled(&self) -> bool {
         self.newest() > 2.0 * MAX_STANDING + 3.0 * self.noise
-    }
-
-    /// Returns the mean difference between the delays of two frames in ms.
-    pub fn noise(&self) -> f64 {
-        self.noise
     }
 
     /// Returns by how much all of the newest frames were delayed more than the fastest, in ms.

@@ -272,7 +272,7 @@ impl Cardboard {
             self.tracker.recenter();
         }
         if let Some(settings) = self.viewer.take_settings() {
-            let folders = self.viewer.folders().to_vec();
+            let folders = self.viewer.folders.clone();
             self.change(settings, &folders, |viewer, settings| viewer.change(settings, &folders))?;
             self.viewer.write_menu();
             self.viewer.write_start_screen();

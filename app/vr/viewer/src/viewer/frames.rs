@@ -48,7 +48,7 @@ impl Viewer {
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
     pub fn render(&mut self, views: &StereoViews, targets: FrameTargets) -> Result<FrameReport, ViewerError> {
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
-        let Some(shown) = self.scene.shown() else {
+        let Some(shown) = &mut self.scene.shown else {
             show_backdrop(gl, views, targets)?;
             return Ok(FrameReport { has_depth: true, ..FrameReport::default() });
         };
@@ -90,7 +90,7 @@ impl Viewer {
         let is_shown = self.scene_state() == SceneState::Ready;
         let is_loading = self.is_loading();
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
-        let text = self.caption.text();
+        let text = self.caption.text.as_str();
         if let Some(question) = self.stats.question() {
             let progress = Some(question.position());
             return Ok(Some(attached.hud.set(Content { text, progress }, Placement::Middle)));
@@ -127,18 +127,18 @@ impl Viewer {
     /// Writes the text of the HUD.
     fn write_caption(&mut self) {
         if let Some(question) = self.stats.question() {
-            return question.write(self.caption.text_mut());
+            return question.write(&mut self.caption.text);
         }
-        if let Some(sentence) = self.scene.failure() {
+        if let Some(sentence) = &self.scene.failure {
             return self.caption.write_sentence(sentence);
         }
         let status = Status {
-            frames: self.stats.last_line(),
-            celsius: self.stats.celsius(),
+            frames: self.stats.last_line.as_ref(),
+            celsius: self.stats.celsius,
             method: self.method_name(),
             auto: self.session.as_ref().and_then(StereoSession::auto),
             pipeline: self.pipeline_name(),
-            loading: self.scene.is_loading().then(|| self.scene.name()),
+            loading: self.scene.is_loading().then_some(self.scene.name.as_str()),
         };
         self.caption.write_status(&status, self.now_ns);
     }
@@ -180,16 +180,16 @@ impl Viewer {
             self.method.is_mixed |= self.auto().is_some_and(Auto::is_measuring);
             self.adapt(&load)?;
         }
-        let was_over = self.stats.is_over();
+        let was_over = self.stats.is_over;
         if !was_over && self.stats.is_time_up(&self.settings, now_ns) && self.ask() {
-            self.stats.end();
+            self.stats.is_over = true;
         }
-        let is_over = self.stats.is_over();
+        let is_over = self.stats.is_over;
         Ok(PresentReport {
             scene,
             late_refreshes,
             gpu_ms,
-            telemetry_due: self.stats.is_line_due(now_ns),
+            telemetry_due: self.stats.telemetry.is_due(now_ns),
             session_over: is_over && !was_over,
             exit: is_over && self.settings.auto_exit,
         })
@@ -242,12 +242,12 @@ impl Viewer {
 
     /// Returns the summary of the session since the scene was first shown, for the log.
     pub fn summary(&self, now_ns: i64) -> SessionSummary {
-        self.stats.summary(now_ns)
+        self.stats.telemetry.summary(now_ns)
     }
 
     /// Returns the answers so far to the settings' questions; each is logged when it is given.
     pub fn ratings(&self) -> &[Rating] {
-        self.stats.ratings()
+        &self.stats.ratings
     }
 
     /// Returns the size in pixels of each eye's image on a display whose full size is `full`.

@@ -23,11 +23,11 @@ impl Viewer {
                 self.press(event == Event::Press);
                 return Ok(Action::Nothing);
             }
-            Event::Tap if self.menu.board().is_some() => return self.choose_pointed(),
+            Event::Tap if self.menu.board.is_some() => return self.choose_pointed(),
             Event::Tap => self.other_method(1)?,
             Event::PreviousMethod => self.other_method(-1)?,
             Event::LongPress if self.menu.is_comparing() => return Ok(Action::Nothing),
-            Event::LongPress if self.menu.board().is_some() => {
+            Event::LongPress if self.menu.board.is_some() => {
                 self.menu.close();
                 Action::Recenter
             }
@@ -99,7 +99,7 @@ impl Viewer {
         let (participant, trial, rating) = (participant.clone(), *trial, f64::from(rating));
         let rating = Rating { participant, trial, method, pipeline, scene, question, rating };
         log::info!("{rating}");
-        self.stats.keep(rating);
+        self.stats.ratings.push(rating);
     }
 
     /// Asks the settings' questions when the session's time is up; returns true if no question is left.

@@ -122,7 +122,7 @@ impl Viewer {
 
     /// Makes the session anew, if there is a scene for it.
     pub(super) fn make_session(&mut self) -> Result<(), GlError> {
-        if let Some(attached) = self.attached.as_ref().filter(|_| self.scene.is_shown()) {
+        if let Some(attached) = self.attached.as_ref().filter(|_| self.scene.shown.is_some()) {
             self.session = Some(self.create_session(&attached.gl.clone())?);
         }
         self.controller.restart();

@@ -182,7 +182,7 @@ fn auto_measures_both_methods_while_nothing_is_allocated_and_says_which_and_why(
     assert!(times.len() == 2 && times[0] <= times[1], "{auto}");
     assert_eq!(line.pipeline.is_some(), line.method == "yoro");
     assert_eq!(held(gl), both, "both methods are ready from the first frame on");
-    let seen = run.viewer.viewer().caption.text();
+    let seen = &run.viewer.viewer().caption.text;
     assert!(seen.contains(&format!("auto:{} {auto}\n", line.method)), "{seen}");
     let chosen = run.viewer.viewer().rendering_method();
     assert_eq!((chosen.name(), run.viewer.viewer().method()), (line.method.as_str(), MethodChoice::Auto));

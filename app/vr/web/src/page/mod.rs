@@ -199,7 +199,7 @@ impl Page {
         yoro_files::provide([]);
         let pair = pair.map_err(sentence)?;
         let pictures = PictureShow::new(&self.gl, &self.show, pair, options, self.settings.ipd.metres())?;
-        let size = pictures.size().to_vec();
+        let size = pictures.pair.size.to_vec();
         self.content = Content::Pictures(Box::new(pictures));
         Ok(size)
     }
@@ -239,7 +239,7 @@ impl Page {
             self.measure_again();
         }
         if let Content::Stream(stream) = &self.content
-            && stream.frusta().is_some()
+            && stream.frusta.is_some()
         {
             self.walker = Walker::new(Pose::IDENTITY);
             self.orbit(self.orbits);
@@ -416,7 +416,7 @@ impl Page {
         };
         let (eyes, size) = match &mut self.content {
             Content::Empty => return Err(JsError::new("There is no picture to save.")),
-            Content::Pictures(pictures) => (read(&pictures.frame), pictures.size()),
+            Content::Pictures(pictures) => (read(&pictures.frame), pictures.pair.size),
             Content::Scene(scene) => (read(&scene.frame), scene.frame.eye(Eye::Left).size()),
             Content::Stream(stream) => (read(&stream.frame), stream.frame.eye(Eye::Left).size()),
         };
@@ -433,7 +433,7 @@ impl Page {
 impl Page {
     fn auto(&self) -> Option<&Auto> {
         match &self.content {
-            Content::Scene(scene) => scene.auto(),
+            Content::Scene(scene) => scene.session.auto(),
             _ => None,
         }
     }
