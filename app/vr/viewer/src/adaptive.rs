@@ -176,7 +176,7 @@ mod tests {
             display_hz: 60.0,
             late_refreshes,
             gpu: gpu_ms.map(|ms| Cost { frames_ago: 0, ms }),
-            thermal_headroom: None,
+            ..FrameLoad::default()
         }
     }
 

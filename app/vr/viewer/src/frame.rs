@@ -12,9 +12,10 @@ pub struct FrameTiming {
 }
 
 /// The state of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SceneState {
     /// Being loaded or generated; a progress bar is shown.
+    #[default]
     Loading,
     /// Shown.
     Ready,
@@ -23,7 +24,7 @@ pub enum SceneState {
 }
 
 /// A report on a presented frame, which tells the platform what to do next.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PresentReport {
     /// The state of the scene.
     pub scene: SceneState,
@@ -39,18 +40,4 @@ pub struct PresentReport {
     pub session_over: bool,
     /// The session is over and `auto-exit` is on: end the program. Stays true from then on.
     pub exit: bool,
-}
-
-impl PresentReport {
-    /// Returns the report for a start screen, which does not count as a frame of the session.
-    pub(crate) fn of_start_screen(scene: SceneState) -> PresentReport {
-        PresentReport {
-            scene,
-            late_refreshes: 0,
-            gpu_ms: None,
-            telemetry_due: false,
-            session_over: false,
-            exit: false,
-        }
-    }
 }

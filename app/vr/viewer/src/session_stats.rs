@@ -5,7 +5,7 @@ use glam::Quat;
 use crate::questionnaire::Questionnaire;
 use yoro_gl::PassTime;
 use yoro_settings::Settings;
-use yoro_settings::telemetry::{DeviceState, Line, Rating, Telemetry, ViewerState};
+use yoro_settings::telemetry::{DeviceState, Line, Rating, Telemetry};
 
 /// Counts frames and asks questions, from the time at which a scene is first shown to the end of the session.
 #[derive(Default)]
@@ -54,7 +54,7 @@ impl SessionStats {
     }
 
     /// Ends a second and returns its line.
-    pub fn line(&mut self, now_ns: i64, viewer: &ViewerState, device: &DeviceState) -> Line {
+    pub fn line(&mut self, now_ns: i64, viewer: Line, device: &DeviceState) -> Line {
         self.celsius = device.skin_celsius.or(device.battery_celsius);
         let line = self.telemetry.line(now_ns, viewer, device);
         self.last_line = Some(line.clone());

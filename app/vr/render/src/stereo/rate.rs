@@ -58,7 +58,7 @@ mod tests {
                 display_hz: 72.0,
                 late_refreshes: u32::from(late > 0 && i % late == 0),
                 gpu: gpu_ms.map(|ms| Cost { frames_ago: 0, ms }),
-                thermal_headroom: None,
+                ..FrameLoad::default()
             };
             chooser.frame(&load)
         })

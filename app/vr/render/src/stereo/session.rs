@@ -30,7 +30,7 @@ pub enum FrameTargets<'a> {
 }
 
 /// What a frame cost, when it was handed to the display.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameLoad {
     /// The time at which the frame ended, in nanoseconds.
     pub ended_ns: i64,

@@ -8,7 +8,7 @@ use super::motion::SynthesizedMotion;
 use super::options::{Pipeline, PipelineOptions, StereoOptions};
 use super::overlay::{OverlayPass, OverlaySurfaces};
 use super::pipeline::Synthesis;
-use crate::view::{DepthResolve, GpuScene, Layout, Renderer, Selection, Targets};
+use crate::view::{DepthResolve, GpuScene, Layout, RenderedDepth, Renderer, Selection, Targets};
 use yoro::eyes::{Eye, EyePair};
 use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
@@ -155,6 +155,7 @@ impl StereoMethod for Synthesized {
         over.finish(frame, dominant, &surfaces);
         let Some(motion) = &mut self.motion else { return Ok(false) };
         let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
-        motion.write(frame, (&depth, &views.source), self.options.guard_band)
+        let rendered = RenderedDepth { depth: &depth, view: &views.source };
+        motion.write(frame, rendered, self.options.guard_band)
     }
 }

@@ -30,6 +30,13 @@ pub(crate) struct VectorPass {
     moves: bool,
 }
 
+/// A depth image, and the view that it shows.
+#[derive(Clone, Copy)]
+pub(crate) struct RenderedDepth<'a> {
+    pub depth: &'a DepthImage<'a>,
+    pub view: &'a View,
+}
+
 /// What moves between two frames: the view whose pixels get vectors, and the view of each frame in whose normalized device
 /// coordinates these are, with the same pose. Only the first one's size matters. All have the convention of the depth
 /// that is written.
@@ -104,17 +111,17 @@ impl VectorPass {
 
     /// Writes vectors (RGBA16F, alpha 1 on moving surfaces) and window depth of a part of the view whose moving surfaces
     /// were drawn last. The destination has the part's size; `corner` is the part's lower left pixel. `rendered` is the
-    /// view that the depth image shows, from the same place in the same direction.
+    /// depth of a view from the same place in the same direction.
     pub fn write(
         &mut self,
-        (depth, rendered): (&DepthImage, &View),
+        RenderedDepth { depth, view: rendered }: RenderedDepth,
         step: &Step,
         corner: [u32; 2],
         to: &Destination,
     ) -> Result<(), GlError> {
         let program = self.vectors.bind(depth)?;
         program.texture("moving_map", 1, self.target.color(0).raw()).set("moves", self.moves);
-        set_places(program, (depth, rendered), step);
+        set_places(program, depth, rendered, step);
         let signed = |at: [u32; 2]| IVec2::from(at.map(|n| n as i32));
         program
             .set("offset", signed(corner) - signed(to.origin))
@@ -134,7 +141,7 @@ impl VectorPass {
 }
 
 /// Sets where a pixel's depth and previous place are.
-fn set_places(program: &Program, (depth, rendered): (&DepthImage, &View), step: &Step) {
+fn set_places(program: &Program, depth: &DepthImage, rendered: &View, step: &Step) {
     let Step { view, now, then, .. } = step;
     let pair = |[x, y]: [u32; 2]| Vec2::new(x as f32, y as f32);
     let corner = |view: &View| Vec2::new(view.frustum.left, view.frustum.bottom);

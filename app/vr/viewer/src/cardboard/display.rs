@@ -376,7 +376,8 @@ impl Cardboard {
         if self.viewer.is_start_screen() {
             self.viewer.draw_start_screen(window);
             attached.presented.set();
-            return Ok(PresentReport::of_start_screen(self.viewer.scene_state()));
+            // Not a frame of the session.
+            return Ok(PresentReport { scene: self.viewer.scene_state(), ..PresentReport::default() });
         }
         let Attached { images, timewarp, lens, .. } = attached;
         let mut turn = Quat::IDENTITY;

@@ -181,10 +181,11 @@ impl Images {
     fn with_depth(
         &mut self,
         gl: &Rc<Context>,
-        (layer, size): (u32, [u32; 2]),
-        (depth, depth_layer): (&Images, u32),
+        layer: u32,
+        size: [u32; 2],
+        depth: ImageLayer,
     ) -> Result<Option<Destination>, GlError> {
-        let Some((color, with)) = self.current.zip(depth.current) else { return Ok(None) };
+        let Some((color, with)) = self.current.zip(depth.images.current) else { return Ok(None) };
         let key = [color, layer as usize, with];
         if let Some((_, target)) = self.with_depth.iter().find(|(known, _)| *known == key) {
             return Ok(Some(target.part(size)));
@@ -194,7 +195,7 @@ impl Images {
         let target = unsafe {
             let target =
                 ForeignTarget::new(gl, self.textures[color], of(self, layer), false, self.spec.size)?;
-            target.attach_depth(gl, depth.textures[with], of(depth, depth_layer))?;
+            target.attach_depth(gl, depth.images.textures[with], of(depth.images, depth.layer))?;
             target
         };
         let part = target.part(size);
@@ -221,6 +222,13 @@ impl Images {
             image_array_index: layer,
         }
     }
+}
+
+/// A layer of a swapchain's images.
+#[derive(Clone, Copy)]
+struct ImageLayer<'a> {
+    images: &'a Images,
+    layer: u32,
 }
 
 /// The images of both eyes: two layers of one swapchain, or two swapchains if the runtime does not support arrays.
@@ -260,9 +268,9 @@ impl EyeImages {
         if self.is_array() { (0, eye.index() as u32) } else { (eye.index(), 0) }
     }
 
-    fn of(&self, eye: Eye) -> (&Images, u32) {
+    fn of(&self, eye: Eye) -> ImageLayer<'_> {
         let (swapchain, layer) = self.place(eye);
-        (&self.0[swapchain], layer)
+        ImageLayer { images: &self.0[swapchain], layer }
     }
 
     pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
@@ -280,7 +288,7 @@ impl EyeImages {
     /// Returns the destinations of both eyes.
     pub fn destinations(&self, size: [u32; 2]) -> Option<[Destination; 2]> {
         let [left, right] = Eye::BOTH.map(|eye| {
-            let (images, layer) = self.of(eye);
+            let ImageLayer { images, layer } = self.of(eye);
             images.destination(layer, size)
         });
         Some([left?, right?])
@@ -295,7 +303,7 @@ impl EyeImages {
     ) -> Result<Option<[Destination; 2]>, GlError> {
         let mut of = |eye| {
             let (swapchain, layer) = self.place(eye);
-            self.0[swapchain].with_depth(gl, (layer, size), depth.of(eye))
+            self.0[swapchain].with_depth(gl, layer, size, depth.of(eye))
         };
         Ok(of(Eye::Left)?.zip(of(Eye::Right)?).map(|(left, right)| [left, right]))
     }
@@ -304,13 +312,13 @@ impl EyeImages {
     pub fn targets(&self, size: [u32; 2]) -> Option<[EyeTarget<'static>; 2]> {
         let colors = self.destinations(size)?;
         Some(Eye::BOTH.map(|eye| EyeTarget {
-            texture: self.of(eye).0.texture(),
+            texture: self.of(eye).images.texture(),
             ..EyeTarget::rectangle(colors[eye.index()])
         }))
     }
 
     pub fn sub_image(&self, eye: Eye, size: [u32; 2]) -> sys::SwapchainSubImage {
-        let (images, layer) = self.of(eye);
+        let ImageLayer { images, layer } = self.of(eye);
         images.sub_image(layer, size)
     }
 }

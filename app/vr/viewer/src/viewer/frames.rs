@@ -14,7 +14,7 @@ use yoro_render::stereo::{
     Auto, DepthTarget, EyeTarget, FrameLoad, FrameReport, FrameTargets, LayerTargets, StereoFrame,
     StereoSession,
 };
-use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
+use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary};
 
 /// The sizes of the eyes' images are multiples of this many pixels, so that small changes need no new targets.
 const SIZE_STEP: f32 = 16.0;
@@ -218,21 +218,22 @@ impl Viewer {
         self.thermal_headroom = device.thermal_headroom;
         let state = self.state();
         self.method.is_mixed = false;
-        self.stats.line(now_ns, &state, device)
+        self.stats.line(now_ns, state, device)
     }
 
     /// Returns the viewer's own part of a log line.
-    pub(super) fn state(&self) -> ViewerState {
-        ViewerState {
+    pub(super) fn state(&self) -> Line {
+        Line {
             method: self.method_name().to_owned(),
             pipeline: self.pipeline_name().map(str::to_owned),
             scene: self.scene_name().to_owned(),
-            render_scale: self.render_scale(),
+            render_scale: self.render_scale().into(),
             imbuffer: self.imbuffer_divisor(),
             run: self.settings.run.clone(),
             auto: self
                 .auto()
                 .map(|auto| if self.method.is_mixed { "measuring".into() } else { auto.to_string() }),
+            ..Line::default()
         }
     }
 

@@ -3,7 +3,7 @@
 use super::Viewer;
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
-use yoro_settings::telemetry::{Rating, ViewerState};
+use yoro_settings::telemetry::{Line, Rating};
 use yoro_settings::{Ipd, Settings};
 
 /// The step by which the IPD changes, in metres.
@@ -94,7 +94,7 @@ impl Viewer {
     fn answer(&mut self) {
         let answer = self.stats.question_mut().and_then(|question| question.answer());
         let Some((question, rating)) = answer else { return };
-        let ViewerState { method, pipeline, scene, .. } = self.state();
+        let Line { method, pipeline, scene, .. } = self.state();
         let Settings { participant, trial, .. } = &self.settings;
         let (participant, trial, rating) = (participant.clone(), *trial, f64::from(rating));
         let rating = Rating { participant, trial, method, pipeline, scene, question, rating };

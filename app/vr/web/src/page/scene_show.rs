@@ -157,9 +157,8 @@ impl SceneShow {
             ended_ns: (now_ms * 1e6) as i64,
             refresh_hz,
             display_hz: refresh_hz,
-            late_refreshes: 0,
             gpu,
-            thermal_headroom: None,
+            ..FrameLoad::default()
         });
     }
 

@@ -249,7 +249,7 @@ impl Session {
         let mut depths = [None; MAX_VIEWS];
         for (i, (eye, (level, pair, size))) in submitted().enumerate().take(MAX_VIEWS) {
             let depth = size.zip(level.depth.as_ref());
-            depths[i] = depth.map(|(size, images)| depth_info(eye, pair, (images, size), after(i)));
+            depths[i] = depth.map(|(size, images)| depth_info(eye, pair, images, size, after(i)));
         }
         let mut views = [sys::CompositionLayerProjectionView {
             ty: sys::CompositionLayerProjectionView::TYPE,
@@ -324,7 +324,8 @@ fn poses_in_scene(viewer: &Viewer, eyes: &EyePair) -> [Pose; 2] {
 fn depth_info(
     eye: Eye,
     pair: &EyePair,
-    (images, size): (&EyeImages, [u32; 2]),
+    images: &EyeImages,
+    size: [u32; 2],
     next: *const c_void,
 ) -> sys::CompositionLayerDepthInfoKHR {
     let [near_z, far_z] = ends(&pair.depth);
