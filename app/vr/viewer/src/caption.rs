@@ -139,10 +139,7 @@ mod tests {
         caption.write_status(&running, 0);
         assert_eq!(caption.text, "60/60 FPS 16.7 ms 31 C\nmono \n");
         caption.write_sentence("there is no file room.obj: give the path of an .obj, .gltf or .glb file");
-        assert_eq!(
-            caption.text,
-            "there is no file room.obj: give\nthe path of an .obj, .gltf or .glb\nfile"
-        );
+        assert_eq!(caption.text, "there is no file room.obj: give\nthe path of an .obj, .gltf or .glb\nfile");
     }
 
     #[test]

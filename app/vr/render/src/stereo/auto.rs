@@ -112,8 +112,8 @@ mod tests {
     use yoro::eyes::{DepthConvention, Eye, EyePair};
     use yoro_context::{Backend, Headless};
 
-    use super::super::{Method, MethodChoice, NearFieldPolicy, StereoOptions, StereoSession};
     use super::super::tests::{Rig, local, pair};
+    use super::super::{Method, MethodChoice, NearFieldPolicy, StereoOptions, StereoSession};
     use super::*;
 
     const FRAME_NS: i64 = 200_000_000;

@@ -5,7 +5,9 @@ use std::cell::RefCell;
 use super::fallback::NearSwitch;
 use super::method::{EyeTarget, StereoError};
 use crate::view::{DepthImage, GpuScene, LitScene, Renderer};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, EyesError, GuardBand, SynthesisViews, ViewLayer};
+use yoro::eyes::{
+    DepthConvention, DepthRange, Eye, EyePair, EyesError, GuardBand, SynthesisViews, ViewLayer,
+};
 use yoro_gl::GlError;
 
 /// A frame to render: its scene, its eyes and their targets.

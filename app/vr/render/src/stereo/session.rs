@@ -246,10 +246,7 @@ impl StereoSession {
     }
 
     /// Returns the methods of a path, and what measures the dominant eye's depth for later frames.
-    fn methods(
-        &mut self,
-        path: StereoPath,
-    ) -> Result<(&mut LayerMethods, Option<&mut NearSwitch>), GlError> {
+    fn methods(&mut self, path: StereoPath) -> Result<(&mut LayerMethods, Option<&mut NearSwitch>), GlError> {
         if path == StereoPath::TwoViews {
             self.two_renders()?;
         }
@@ -298,9 +295,7 @@ impl StereoSession {
         if let Some(auto) = &mut self.auto {
             auto.end_frame(load);
         }
-        if self.options.motion_vectors
-            && self.options.frame_rate == FrameRate::Auto
-            && self.rate.frame(load)
+        if self.options.motion_vectors && self.options.frame_rate == FrameRate::Auto && self.rate.frame(load)
         {
             let which = if self.rate.is_half { "every second frame" } else { "every frame" };
             log::info!("frame-rate: {which} is rendered");

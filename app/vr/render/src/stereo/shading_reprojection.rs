@@ -31,7 +31,8 @@ impl StereoMethod for ShadingReprojection {
         renderer.prepare_reprojected(scene)?;
         if self.made.is_none() {
             let targets = || renderer.targets(Layout::Single);
-            self.made = Some(Made { dominant: targets()?, second: targets()?, over: OverlayPass::new(renderer)? });
+            self.made =
+                Some(Made { dominant: targets()?, second: targets()?, over: OverlayPass::new(renderer)? });
         }
         Ok(())
     }

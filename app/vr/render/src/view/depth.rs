@@ -118,7 +118,9 @@ impl DepthCopy {
     pub fn new(gl: &Rc<Context>) -> Result<DepthCopy, GlError> {
         let mut program = DepthProgram::new(gl, "render/depth_write.frag");
         let capabilities = gl.capabilities();
-        for (i, is_needed) in [true, capabilities.sample_masks, capabilities.multiview].into_iter().enumerate() {
+        for (i, is_needed) in
+            [true, capabilities.sample_masks, capabilities.multiview].into_iter().enumerate()
+        {
             if is_needed {
                 program.variant(i)?;
             }

@@ -89,7 +89,13 @@ impl Renderer {
     }
 
     /// Clears the targets, and draws a part of the scene and the sky behind it.
-    pub(super) fn draw_on_sky(&self, targets: &mut Targets, scene: &LitScene, views: &[View], surfaces: &Surfaces) {
+    pub(super) fn draw_on_sky(
+        &self,
+        targets: &mut Targets,
+        scene: &LitScene,
+        views: &[View],
+        surfaces: &Surfaces,
+    ) {
         self.draw_on_sky_as(targets, scene, views, surfaces, None);
     }
 

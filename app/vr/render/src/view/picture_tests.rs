@@ -8,8 +8,8 @@ use crate::fixture::quad;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
 use yoro_assets::{Alpha, Material, Model, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
-use yoro_test_support::record::Recorder;
 use yoro_gl::Capabilities;
+use yoro_test_support::record::Recorder;
 
 const SIZE: [u32; 2] = [96, 64];
 

@@ -259,7 +259,8 @@ impl Renderer {
         if self.depth_resolve == DepthResolve::InColor && !layer {
             self.prepare_variant(scene, Variant { carried: true, ..plain })?;
         }
-        let samples = if self.depth_resolve == DepthResolve::Samples && !layer { self.settings.msaa } else { 1 };
+        let samples =
+            if self.depth_resolve == DepthResolve::Samples && !layer { self.settings.msaa } else { 1 };
         if self.ink || self.depth_resolve == DepthResolve::Samples {
             self.prepare_resolve(Resolve { samples, ink: self.ink, depth: samples > 1, layer })?;
         }

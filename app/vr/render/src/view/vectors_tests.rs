@@ -83,7 +83,8 @@ fn a_jump_is_no_motion() {
         let image = targets.depth(view.size, Eye::Left, [0, 0]);
         let step = Step { view, now: view, then: view, ndc: Ndc::ZeroToOne };
         pass.draw_moving(&rig.scene, &step).unwrap();
-        pass.write(RenderedDepth { depth: &image, view: &view }, &step, [0, 0], &Destination::whole(&target)).unwrap();
+        pass.write(RenderedDepth { depth: &image, view: &view }, &step, [0, 0], &Destination::whole(&target))
+            .unwrap();
         let vectors = target.read_rgba32f(0, [0, 0], view.size);
         vectors.iter().map(|v| v[0].abs().max(v[1].abs())).fold(0.0, f32::max)
     };

@@ -149,12 +149,7 @@ mod tests {
     const FRAME: i64 = 16_666_667;
 
     fn viewer() -> Line {
-        Line {
-            method: "yoro".into(),
-            scene: "prototype".into(),
-            render_scale: 1.0,
-            ..Default::default()
-        }
+        Line { method: "yoro".into(), scene: "prototype".into(), render_scale: 1.0, ..Default::default() }
     }
 
     fn run(telemetry: &mut Telemetry, device: &DeviceState, seconds: usize) -> Vec<Line> {

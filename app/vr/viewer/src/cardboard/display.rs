@@ -305,7 +305,11 @@ impl Cardboard {
     ///
     /// # Errors
     /// Those of the calls above.
-    pub fn frame(&mut self, window: &Destination, timing: &FrameTiming) -> Result<PresentReport, ViewerError> {
+    pub fn frame(
+        &mut self,
+        window: &Destination,
+        timing: &FrameTiming,
+    ) -> Result<PresentReport, ViewerError> {
         self.render(timing)?;
         self.present(window, timing)
     }

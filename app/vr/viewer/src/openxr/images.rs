@@ -145,7 +145,9 @@ impl Images {
             }
         }
         if index as usize >= self.framebuffers.len() {
-            return Err(XrError::InvalidRuntimeData(format!("names an image number {index} that does not exist")));
+            return Err(XrError::InvalidRuntimeData(format!(
+                "names an image number {index} that does not exist"
+            )));
         }
         self.current = Some(index as usize);
         Ok(())

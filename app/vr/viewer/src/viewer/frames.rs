@@ -8,8 +8,8 @@ use crate::error::ViewerError;
 use crate::frame::{FrameTiming, PresentReport, SceneState};
 use yoro::choice::Cost;
 use yoro::eyes::{EyePair, Gaze, StereoViews};
-use yoro_lenses::{Content, Panel, Placement};
 use yoro_gl::{Context, GlError};
+use yoro_lenses::{Content, Panel, Placement};
 use yoro_render::stereo::{
     Auto, DepthTarget, EyeTarget, FrameLoad, FrameReport, FrameTargets, LayerTargets, StereoFrame,
     StereoSession,

@@ -27,21 +27,21 @@ mod tests;
 use std::path::PathBuf;
 use std::rc::Rc;
 
+use crate::adaptive::Controller;
 use crate::caption::Caption;
 use crate::error::ViewerError;
 use crate::frame::SceneState;
 use crate::loading::SceneSource;
-use crate::adaptive::Controller;
 use crate::options::render_settings;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
 use menu::Menu;
+use session::MethodInUse;
 use start::StartScreen;
 use yoro::eyes::{FoveationLevel, Pose};
 use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::{Board, Hud};
-use session::MethodInUse;
 use yoro_render::stereo::{FrameLoad, StereoSession};
 use yoro_settings::{Ipd, Settings};
 

@@ -117,7 +117,11 @@ impl Runtime {
 ///
 /// # Errors
 /// [`NotFound`] with the failure at every place.
-pub fn find(places: &[RuntimeSource], broker: &dyn Broker, java: Option<&JavaContext>) -> Result<Runtime, NotFound> {
+pub fn find(
+    places: &[RuntimeSource],
+    broker: &dyn Broker,
+    java: Option<&JavaContext>,
+) -> Result<Runtime, NotFound> {
     let mut attempts = Vec::new();
     for place in places {
         let candidates = match candidates(place, broker) {
@@ -137,7 +141,11 @@ pub fn find(places: &[RuntimeSource], broker: &dyn Broker, java: Option<&JavaCon
     Err(NotFound { attempts })
 }
 
-fn load(place: &RuntimeSource, candidate: &Candidate, java: Option<&JavaContext>) -> Result<Runtime, Failure> {
+fn load(
+    place: &RuntimeSource,
+    candidate: &Candidate,
+    java: Option<&JavaContext>,
+) -> Result<Runtime, Failure> {
     let (get_instance_proc_addr, api_version) = match place {
         RuntimeSource::Loader(_) => (candidate.open_loader(java)?, None),
         RuntimeSource::Broker(_) | RuntimeSource::Manifest(_) => {
@@ -150,7 +158,10 @@ fn load(place: &RuntimeSource, candidate: &Candidate, java: Option<&JavaContext>
 }
 
 /// Returns the libraries that a place names, in the order in which to try them.
-fn candidates(place: &RuntimeSource, broker: &dyn Broker) -> Result<Vec<Result<Candidate, Failure>>, Failure> {
+fn candidates(
+    place: &RuntimeSource,
+    broker: &dyn Broker,
+) -> Result<Vec<Result<Candidate, Failure>>, Failure> {
     match place {
         RuntimeSource::Loader(library) => {
             Ok(vec![Ok(Candidate { library: library.clone(), functions: Default::default() })])

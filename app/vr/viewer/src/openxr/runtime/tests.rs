@@ -196,7 +196,8 @@ fn java_is_passed_before_or_after_the_negotiation() {
 #[test]
 fn a_loader_is_preferred_and_optional() {
     let manifest = Written::fixture(&[]);
-    let places = |loader: &Path| [RuntimeSource::Loader(loader.into()), RuntimeSource::Manifest(manifest.path())];
+    let places =
+        |loader: &Path| [RuntimeSource::Loader(loader.into()), RuntimeSource::Manifest(manifest.path())];
     let runtime = find(&places(fixture()), &NoBroker, None).unwrap();
     assert_eq!(runtime.found().to_string(), format!("OpenXR by the loader {}", fixture().display()));
     assert!(runtime.entry().unwrap().enumerate_extensions().is_ok());
@@ -340,7 +341,8 @@ fn places_follow_the_conventions() {
 
 #[test]
 fn all_failures_are_listed_in_one_line() {
-    let places = [RuntimeSource::Manifest("/absent/a.json".into()), RuntimeSource::Manifest("/absent/b.json".into())];
+    let places =
+        [RuntimeSource::Manifest("/absent/a.json".into()), RuntimeSource::Manifest("/absent/b.json".into())];
     let error = find(&places, &NoBroker, None).unwrap_err();
     assert!(error.nothing_installed());
     assert_eq!(

@@ -12,7 +12,7 @@ use crate::openxr::error::check;
 use crate::openxr::error::{XrError, call, optional};
 use crate::openxr::fixed_foveation::{self, FixedFoveation};
 use crate::openxr::graphics::{self, make_current};
-use crate::openxr::images::{EyeImages, Images, ImageSpec};
+use crate::openxr::images::{EyeImages, ImageSpec, Images};
 use crate::openxr::input::Input;
 use crate::openxr::mask::Mask;
 use crate::openxr::motion::{self, MotionImages};
@@ -295,7 +295,8 @@ impl FrameImages {
         })?;
         let foveation = fixed_foveation::flags(session, gl);
         let level = |LevelSize { recommended, size }: LevelSize| {
-            let spec = ImageSpec { format: color, is_depth: false, is_sampled: true, size, layers: 2, foveation };
+            let spec =
+                ImageSpec { format: color, is_depth: false, is_sampled: true, size, layers: 2, foveation };
             let eyes = EyeImages::new(graphics, gl, session, spec)?;
             Ok::<_, XrError>(RuntimeLevel { eyes, depth: None, recommended, size })
         };
