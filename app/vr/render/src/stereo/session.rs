@@ -132,7 +132,7 @@ impl StereoSession {
     }
 
     /// True if the display's runtime is to make the frame after the next one of this session, from motion vectors.
-    pub fn leaves_frames_to_runtime(&self) -> bool {
+    pub fn uses_runtime_frame_synthesis(&self) -> bool {
         self.options.motion_vectors
             && match self.options.frame_rate {
                 FrameRate::Full => false,

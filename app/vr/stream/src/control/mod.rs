@@ -313,7 +313,7 @@ impl RateControl {
             Queue::Steady if self.trend.is_late() => Queue::Shrinks,
             queue => queue,
         };
-        self.rate.follow(queue, (self.trend.is_stalled(), is_full), round_trip, now);
+        self.rate.follow(queue, self.trend.is_stalled(), is_full, round_trip, now);
     }
 
     /// Records that the client misses a frame, without which it cannot decode any before the next intra frame.

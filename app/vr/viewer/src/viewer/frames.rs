@@ -77,8 +77,8 @@ impl Viewer {
     }
 
     /// True if the display's runtime is to make every second frame.
-    pub fn leaves_frames_to_runtime(&self) -> bool {
-        self.session.as_ref().is_some_and(StereoSession::leaves_frames_to_runtime)
+    pub fn uses_runtime_frame_synthesis(&self) -> bool {
+        self.session.as_ref().is_some_and(StereoSession::uses_runtime_frame_synthesis)
     }
 
     /// Returns the HUD of this frame, if it is to be shown.
@@ -151,7 +151,7 @@ impl Viewer {
         let &FrameTiming { now_ns, mut refresh_hz, .. } = timing;
         self.now_ns = now_ns;
         // While a runtime makes every second frame, it may give the period of the display or that of the renders.
-        if self.leaves_frames_to_runtime() {
+        if self.uses_runtime_frame_synthesis() {
             self.display_hz = self.display_hz.max(refresh_hz);
             refresh_hz = self.display_hz / 2.0;
         } else {

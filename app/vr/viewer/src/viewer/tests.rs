@@ -375,11 +375,11 @@ fn only_settings_that_differ_take_effect() {
     viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "msaa=4"]), &[]).unwrap();
     assert_eq!((viewer.viewer().method(), viewer.viewer().ipd()), (tapped, Ipd::nearest(0.05)));
     assert!((viewer.optics().params().inter_lens - 0.060).abs() < 1e-6);
-    let told = viewer.optics().screen();
+    let reported = viewer.optics().screen();
     viewer.configure(with(&viewer, &["screen=158x71mm"]), &[]).unwrap();
     assert_eq!(viewer.optics().screen(), [0.158, 0.071]);
     viewer.configure(with(&viewer, &["screen=auto"]), &[]).unwrap();
-    assert_eq!(viewer.optics().screen(), told);
+    assert_eq!(viewer.optics().screen(), reported);
     viewer.configure(with(&viewer, &["ipd=auto"]), &[]).unwrap();
     assert_eq!(viewer.viewer().ipd(), Ipd::nearest(viewer.optics().params().inter_lens));
     viewer.configure(with(&viewer, &["seed=2"]), &[]).unwrap();

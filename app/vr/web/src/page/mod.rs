@@ -104,7 +104,7 @@ impl Page {
     }
 
     /// Returns the defaults of the choices that all programs have, and the largest distance between the eyes, as JSON:
-    /// `{"method", "msaa", "dominant", "ipd", "mostIpd"}`. Distances are in millimetres.
+    /// `{"method", "msaa", "dominant", "ipd", "maxIpd"}`. Distances are in millimetres.
     #[wasm_bindgen(js_name = defaultChoices)]
     pub fn default_choices() -> String {
         let Settings { method, msaa, dominant, ipd, .. } = Settings::default();
@@ -114,7 +114,7 @@ impl Page {
             "msaa": msaa,
             "dominant": dominant,
             "ipd": millimetres(ipd),
-            "mostIpd": millimetres(Ipd::MAX),
+            "maxIpd": millimetres(Ipd::MAX),
         })
         .to_string()
     }
