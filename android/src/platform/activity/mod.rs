@@ -17,7 +17,7 @@ use yoro_context::android::{Window, WindowError};
 use yoro_gl::{Context, Destination};
 use yoro_lenses::{MotionSample, Screen};
 use yoro_settings::telemetry::DeviceState;
-use yoro_viewer::{Action, Cardboard, Event, FrameReport, FrameTiming, ViewerError};
+use yoro_viewer::{Action, Cardboard, Event, FrameTiming, PresentReport, ViewerError};
 
 use crate::frame_timing::Refresh;
 use crate::platform::camera::Scan;
@@ -280,7 +280,7 @@ impl Activity {
     }
 
     /// Finishes a frame, on any display.
-    fn after_frame(&mut self, report: &FrameReport) {
+    fn after_frame(&mut self, report: &PresentReport) {
         self.configuration.take_shared(&mut self.display);
         if let Some(viewer) = self.display.viewer_mut()
             && self.configuration.keep(viewer)

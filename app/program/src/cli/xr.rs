@@ -19,7 +19,7 @@ use yoro_render::stereo::MethodChoice;
 use yoro_settings::Settings;
 use yoro_settings::telemetry::DeviceState;
 use yoro_settings::telemetry::stats::median;
-use yoro_viewer::openxr::runtime::{self, NoBroker, Place, Runtime};
+use yoro_viewer::openxr::runtime::{self, NoBroker, Runtime, RuntimeSource};
 use yoro_viewer::openxr::{Capture, Description, Frame, Headset, Options, Step};
 use yoro_viewer::render_settings;
 use yoro_viewer::{SceneState, Viewer};
@@ -80,7 +80,7 @@ impl XrArgs {
                     file.display()
                 );
                 let is_manifest = files::has_extension(file, &["json"]);
-                vec![if is_manifest { Place::Manifest(file.clone()) } else { Place::Loader(file.clone()) }]
+                vec![if is_manifest { RuntimeSource::Manifest(file.clone()) } else { RuntimeSource::Loader(file.clone()) }]
             }
         };
         // Where it was looked for is for those who have installed one.

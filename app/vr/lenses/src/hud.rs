@@ -193,7 +193,7 @@ impl Panel<'_> {
             gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
                 let to = &eyes[eye.index()];
-                let (corner, size) = place((shown, pair), eye, self.hud.used, self.placement);
+                let (corner, size) = place(shown, pair, eye, self.hud.used, self.placement);
                 let [first, end] = [[0; 2], size]
                     .map(|beyond| [0, 1].map(|i| (corner[i] + beyond[i]).clamp(0, to.size[i] as i32) as u32));
                 let part = [0, 1].map(|i| end[i] - first[i]);
@@ -218,9 +218,10 @@ fn below(placement: Placement) -> f32 {
 }
 
 /// Returns the origin, which may lie outside, and the size, in pixels of an eye's image, of the panel's upper `used` rows.
-/// The eyes are the whole ones and those of the image.
+/// `shown` are the whole eyes, `pair` those of the image.
 fn place(
-    (shown, pair): (&EyePair, &EyePair),
+    shown: &EyePair,
+    pair: &EyePair,
     eye: Eye,
     used: usize,
     placement: Placement,
@@ -268,7 +269,7 @@ mod tests {
     fn the_panel_hangs_at_its_distance() {
         let frustum = Frustum::from_fov(-0.7, 0.7, 0.7, -0.7);
         let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.06, DepthRange::PAPER, [1000; 2], Eye::Right);
-        let [left, right] = Eye::BOTH.map(|eye| place((&pair, &pair), eye, SIZE[1], Placement::Below));
+        let [left, right] = Eye::BOTH.map(|eye| place(&pair, &pair, eye, SIZE[1], Placement::Below));
         assert_eq!(left.1, right.1);
         let disparity = left.0[0] as f32 - right.0[0] as f32;
         assert!((disparity - 0.06 / DISTANCE * pair.focal_length_pixels()).abs() <= 1.0);

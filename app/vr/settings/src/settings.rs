@@ -233,28 +233,13 @@ impl Settings {
         overrides: impl IntoIterator<Item = S>,
     ) -> Result<Settings, SettingsError> {
         let mut settings = self;
-        if let Some(path) = file {
-            settings.apply_file(path)?;
+        if let Some(error) = file.and_then(|path| settings.apply_file_leniently(path).into_iter().next()) {
+            return Err(error);
         }
         for pair in overrides {
             settings.apply(pair.as_ref())?;
         }
         Ok(settings)
-    }
-
-    /// Applies a TOML file.
-    ///
-    /// # Errors
-    /// [`SettingsError`]; the settings stay unchanged.
-    pub fn apply_file(&mut self, path: &Path) -> Result<(), SettingsError> {
-        let mut changed = self.clone();
-        match changed.apply_file_leniently(path).into_iter().next() {
-            Some(error) => Err(error),
-            None => {
-                *self = changed;
-                Ok(())
-            }
-        }
     }
 
     /// Applies whatever is valid in a TOML file, and returns the errors, for programs that cannot simply be restarted.

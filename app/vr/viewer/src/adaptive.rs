@@ -158,12 +158,6 @@ impl Controller {
     }
 }
 
-impl Default for Controller {
-    fn default() -> Controller {
-        Controller::new()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,7 +170,7 @@ mod tests {
             display_hz: 60.0,
             late_refreshes,
             gpu: gpu_ms.map(|ms| Cost { frames_ago: 0, ms }),
-            thermal_headroom: None,
+            ..FrameLoad::default()
         }
     }
 
@@ -192,7 +186,14 @@ mod tests {
 
     impl Device {
         fn new(full_ms: f32, timer_queries: bool) -> Device {
-            Device { controller: Controller::new(), now_ns: 0, full_ms, timer_queries, headroom: None, changes: 0 }
+            Device {
+                controller: Controller::new(),
+                now_ns: 0,
+                full_ms,
+                timer_queries,
+                headroom: None,
+                changes: 0,
+            }
         }
 
         fn run(&mut self, seconds: f32) -> f32 {
@@ -203,8 +204,10 @@ mod tests {
                 let late_refreshes = (gpu_ms / (1e3 / 60.0)).floor() as u32;
                 self.now_ns += (1 + late_refreshes as i64) * 16_666_667;
                 let gpu_ms = self.timer_queries.then_some(gpu_ms);
-                let load =
-                    FrameLoad { thermal_headroom: self.headroom, ..load(self.now_ns, late_refreshes, gpu_ms) };
+                let load = FrameLoad {
+                    thermal_headroom: self.headroom,
+                    ..load(self.now_ns, late_refreshes, gpu_ms)
+                };
                 self.changes += (self.controller.frame(&load) != before) as usize;
             }
             self.controller.quality().render_scale

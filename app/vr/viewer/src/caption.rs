@@ -30,7 +30,8 @@ pub(crate) struct Caption {
     pub is_shown: bool,
     message: String,
     message_until_ns: i64,
-    text: String,
+    /// The text that was written last.
+    pub text: String,
 }
 
 impl Caption {
@@ -54,16 +55,6 @@ impl Caption {
 
     fn has_message(&self, now_ns: i64) -> bool {
         now_ns < self.message_until_ns
-    }
-
-    /// Returns the text that was written last.
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// Returns the text for a caller that writes its own.
-    pub fn text_mut(&mut self) -> &mut String {
-        &mut self.text
     }
 
     /// Writes the known ones of frame rate, frame time and temperature, the method, and the loading scene or message.
@@ -140,18 +131,15 @@ mod tests {
             ..Status::default()
         };
         caption.write_status(&loading, 0);
-        assert_eq!(caption.text(), "yoro gather\nloading street");
+        assert_eq!(caption.text, "yoro gather\nloading street");
         let line =
             Line { fps: Some(59.94), refresh_hz: Some(60.0), frame_ms: Some(16.68), ..Line::default() };
         let running =
             Status { frames: Some(&line), celsius: Some(31.2), method: "mono", ..Status::default() };
         caption.write_status(&running, 0);
-        assert_eq!(caption.text(), "60/60 FPS 16.7 ms 31 C\nmono \n");
+        assert_eq!(caption.text, "60/60 FPS 16.7 ms 31 C\nmono \n");
         caption.write_sentence("there is no file room.obj: give the path of an .obj, .gltf or .glb file");
-        assert_eq!(
-            caption.text(),
-            "there is no file room.obj: give\nthe path of an .obj, .gltf or .glb\nfile"
-        );
+        assert_eq!(caption.text, "there is no file room.obj: give\nthe path of an .obj, .gltf or .glb\nfile");
     }
 
     #[test]
@@ -161,12 +149,12 @@ mod tests {
         caption.announce("recentered".into(), 1);
         caption.write_status(&Status { method: "mono", ..Status::default() }, MESSAGE_NS);
         assert!(caption.is_in_view(MESSAGE_NS) && !caption.is_in_view(MESSAGE_NS + 1));
-        assert_eq!(caption.text(), "mono \nrecentered");
+        assert_eq!(caption.text, "mono \nrecentered");
         caption.announce(String::new(), 1);
         assert!(!caption.is_in_view(1));
         caption.announce("one\ntwo".into(), 1);
         caption.write_status(&Status { method: "mono", ..Status::default() }, 2 * MESSAGE_NS);
-        assert_eq!(caption.text(), "one\ntwo");
+        assert_eq!(caption.text, "one\ntwo");
         assert!(caption.is_in_view(2 * MESSAGE_NS) && !caption.is_in_view(2 * MESSAGE_NS + 1));
     }
 }

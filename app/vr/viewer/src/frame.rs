@@ -12,9 +12,10 @@ pub struct FrameTiming {
 }
 
 /// The state of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SceneState {
     /// Being loaded or generated; a progress bar is shown.
+    #[default]
     Loading,
     /// Shown.
     Ready,
@@ -23,8 +24,8 @@ pub enum SceneState {
 }
 
 /// A report on a presented frame, which tells the platform what to do next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameReport {
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PresentReport {
     /// The state of the scene.
     pub scene: SceneState,
     /// Number of the display's refreshes by which this frame was late.
@@ -39,18 +40,4 @@ pub struct FrameReport {
     pub session_over: bool,
     /// The session is over and `auto-exit` is on: end the program. Stays true from then on.
     pub exit: bool,
-}
-
-impl FrameReport {
-    /// Returns the report for a start screen, which does not count as a frame of the session.
-    pub(crate) fn of_start_screen(scene: SceneState) -> FrameReport {
-        FrameReport {
-            scene,
-            late_refreshes: 0,
-            gpu_ms: None,
-            telemetry_due: false,
-            session_over: false,
-            exit: false,
-        }
-    }
 }

@@ -24,7 +24,7 @@ mod viewer;
 pub use cardboard::{Cardboard, HeldHead};
 pub use error::ViewerError;
 pub use event::{Action, Event};
-pub use frame::{FrameReport, FrameTiming, SceneState};
+pub use frame::{FrameTiming, PresentReport, SceneState};
 pub use loading::{SceneSource, list_scenes};
 pub use options::{render_settings, stereo_options};
 pub use viewer::Viewer;

@@ -43,13 +43,16 @@ impl Shown {
 /// The scene in use. While another one is being loaded, the old one stays shown.
 pub(crate) struct SceneSlot {
     source: SceneSource,
-    name: String,
+    /// The name of the scene that is shown or being loaded.
+    pub name: String,
     loader: Option<Loader>,
-    failure: Option<String>,
+    /// The reason, in one sentence, why the scene cannot be shown.
+    pub failure: Option<String>,
     viewpoints: Vec<Viewpoint>,
     /// The number of the viewpoint in use; not checked until the viewpoints are known.
-    viewpoint: usize,
-    shown: Option<Shown>,
+    pub viewpoint: usize,
+    /// The scene that is shown; dropped with the GL context.
+    pub shown: Option<Shown>,
 }
 
 impl SceneSlot {
@@ -95,30 +98,6 @@ impl SceneSlot {
         self.go_to(self.viewpoint);
     }
 
-    /// Shows a scene.
-    pub fn show(&mut self, shown: Shown) {
-        self.shown = Some(shown);
-    }
-
-    /// Drops the objects on the GPU.
-    pub fn drop_shown(&mut self) {
-        self.shown = None;
-    }
-
-    /// Records the reason, in one sentence, why the scene cannot be shown.
-    pub fn fail(&mut self, reason: String) {
-        self.failure = Some(reason);
-    }
-
-    /// Returns the scene that is shown.
-    pub fn shown(&mut self) -> Option<&mut Shown> {
-        self.shown.as_mut()
-    }
-
-    pub fn is_shown(&self) -> bool {
-        self.shown.is_some()
-    }
-
     pub fn is_loading(&self) -> bool {
         self.loader.is_some()
     }
@@ -131,26 +110,12 @@ impl SceneSlot {
         }
     }
 
-    pub fn failure(&self) -> Option<&str> {
-        self.failure.as_deref()
-    }
-
-    /// Returns the name of the scene that is shown or being loaded.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
     /// Returns the scene after this one, if there is another.
     pub fn next(&self, seed: u64, folders: &[PathBuf]) -> Option<SceneSource> {
         let sources = SceneSource::all(seed, folders);
         let at = sources.iter().position(|source| *source == self.source);
         let next = at.map_or(0, |at| at + 1) % sources.len().max(1);
         sources.into_iter().nth(next).filter(|source| *source != self.source)
-    }
-
-    /// Returns the number of the viewpoint in use.
-    pub fn viewpoint(&self) -> usize {
-        self.viewpoint
     }
 
     /// Goes to a viewpoint; numbers beyond the last wrap around.

@@ -5,20 +5,22 @@ use glam::Quat;
 use crate::questionnaire::Questionnaire;
 use yoro_gl::PassTime;
 use yoro_settings::Settings;
-use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
+use yoro_settings::telemetry::{DeviceState, Line, Rating, Telemetry};
 
 /// Counts frames and asks questions, from the time at which a scene is first shown to the end of the session.
 #[derive(Default)]
 pub(crate) struct SessionStats {
-    telemetry: Telemetry,
-    last_line: Option<Line>,
-    celsius: Option<f32>,
+    pub telemetry: Telemetry,
+    /// The line of the last second.
+    pub last_line: Option<Line>,
+    /// The device's temperature in degrees Celsius.
+    pub celsius: Option<f32>,
     /// The time at which the scene was first shown.
     begin_ns: Option<i64>,
     /// The questions at the end of the session; `None` before its end.
     questionnaire: Option<Questionnaire>,
-    ratings: Vec<Rating>,
-    is_over: bool,
+    pub ratings: Vec<Rating>,
+    pub is_over: bool,
 }
 
 impl SessionStats {
@@ -45,42 +47,18 @@ impl SessionStats {
         self.is_over = false;
     }
 
-    /// Pauses counting: the time until the next frame does not count.
-    pub fn pause(&mut self) {
-        self.telemetry.pause();
-    }
-
     /// Counts a frame, with the GPU times of `timed` earlier ones. Returns by how many refreshes it was late.
     pub fn frame(&mut self, now_ns: i64, refresh_hz: f32, passes: &[PassTime], timed: u32) -> u32 {
         self.telemetry.gpu(passes.iter().map(|pass| (pass.name, pass.time)), timed);
         self.telemetry.frame(now_ns, refresh_hz)
     }
 
-    /// True if a second has passed since the last line.
-    pub fn is_line_due(&self, now_ns: i64) -> bool {
-        self.telemetry.is_due(now_ns)
-    }
-
     /// Ends a second and returns its line.
-    pub fn line(&mut self, now_ns: i64, viewer: &ViewerState, device: &DeviceState) -> Line {
+    pub fn line(&mut self, now_ns: i64, viewer: Line, device: &DeviceState) -> Line {
         self.celsius = device.skin_celsius.or(device.battery_celsius);
         let line = self.telemetry.line(now_ns, viewer, device);
         self.last_line = Some(line.clone());
         line
-    }
-
-    /// Returns the line of the last second.
-    pub fn last_line(&self) -> Option<&Line> {
-        self.last_line.as_ref()
-    }
-
-    /// Returns the device's temperature in degrees Celsius.
-    pub fn celsius(&self) -> Option<f32> {
-        self.celsius
-    }
-
-    pub fn summary(&self, now_ns: i64) -> SessionSummary {
-        self.telemetry.summary(now_ns)
     }
 
     /// True if the session's duration has passed.
@@ -109,24 +87,5 @@ impl SessionStats {
         if let Some(questions) = &mut self.questionnaire {
             questions.look(orientation, now_ns);
         }
-    }
-
-    /// Stores an answer.
-    pub fn keep(&mut self, rating: Rating) {
-        self.ratings.push(rating);
-    }
-
-    pub fn ratings(&self) -> &[Rating] {
-        &self.ratings
-    }
-
-    /// True if the session is over.
-    pub fn is_over(&self) -> bool {
-        self.is_over
-    }
-
-    /// Ends the session.
-    pub fn end(&mut self) {
-        self.is_over = true;
     }
 }

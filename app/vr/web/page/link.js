@@ -18,9 +18,9 @@ export const most = { ipd: 0, divider: 100 };
 
 /** Takes the module's defaults and bounds, as JSON. @param {string} json */
 export function learn(json) {
-  const { mostIpd, ...told } = JSON.parse(json);
-  Object.assign(defaults, told);
-  most.ipd = mostIpd;
+  const { maxIpd, ...choices } = JSON.parse(json);
+  Object.assign(defaults, choices);
+  most.ipd = maxIpd;
 }
 
 /** The largest coordinate of the head in metres, which is the module's limit. */

@@ -112,8 +112,8 @@ mod tests {
     use yoro::eyes::{DepthConvention, Eye, EyePair};
     use yoro_context::{Backend, Headless};
 
-    use super::super::{Method, MethodChoice, NearFieldPolicy, StereoOptions, StereoSession};
     use super::super::tests::{Rig, local, pair};
+    use super::super::{Method, MethodChoice, NearFieldPolicy, StereoOptions, StereoSession};
     use super::*;
 
     const FRAME_NS: i64 = 200_000_000;
@@ -128,14 +128,7 @@ mod tests {
         shows: impl Fn(StereoPath, [Vec<u8>; 2]) -> bool,
     ) -> (Choice, [u32; 2]) {
         let mut frames = [0; 2];
-        let mut load = FrameLoad {
-            ended_ns: 0,
-            refresh_hz: 60.0,
-            display_hz: 60.0,
-            late_refreshes: 0,
-            gpu: None,
-            thermal_headroom: None,
-        };
+        let mut load = FrameLoad { refresh_hz: 60.0, display_hz: 60.0, ..FrameLoad::default() };
         let mut previous = None;
         loop {
             let shown = rig.render_after(session, pair, previous.as_ref());

@@ -27,7 +27,7 @@ impl Conventional {
     fn make(&mut self, renderer: &Renderer) -> Result<(), GlError> {
         if self.targets.is_none() {
             self.targets = Some(renderer.targets(Layout::Single)?);
-            let is_pair = renderer.nearest_depth() == DepthResolve::InColor;
+            let is_pair = renderer.depth_resolve == DepthResolve::InColor;
             self.vectors = self.has_vectors.then(|| VectorPass::new(&renderer.gl, is_pair)).transpose()?;
         }
         Ok(())
@@ -51,7 +51,7 @@ impl StereoMethod for Conventional {
             let views = std::slice::from_ref(&view);
             let is_complete = frame.renderer.draw_all(targets, &frame.scene, views, depth, Some(to))?;
             if !is_complete {
-                frame.renderer.develop(targets, &view, Eye::Left, [0, 0], &to.color, None);
+                frame.renderer.composite(targets, &view, Eye::Left, [0, 0], &to.color, None);
             }
             if depth {
                 let depth = targets.depth(view.size, Eye::Left, [0, 0]);

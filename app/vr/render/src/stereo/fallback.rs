@@ -41,7 +41,11 @@ pub(super) struct NearSwitch {
 
 impl Fallback {
     /// Compiles the measurement if the method synthesizes and the options have a policy.
-    pub(super) fn new(gl: &Rc<Context>, method: Method, options: &StereoOptions) -> Result<Fallback, GlError> {
+    pub(super) fn new(
+        gl: &Rc<Context>,
+        method: Method,
+        options: &StereoOptions,
+    ) -> Result<Fallback, GlError> {
         let policy = options.policy.filter(|_| method == Method::Synthesized);
         let near = policy.map(|policy| {
             Ok(NearSwitch { policy, mode: FrameMode::default(), fraction: NearFraction::new(gl)? })
@@ -51,7 +55,7 @@ impl Fallback {
 
     /// Compiles what depends on the renderer.
     pub(super) fn prepare(&mut self, renderer: &Renderer) -> Result<(), GlError> {
-        let is_pair = renderer.nearest_depth() == DepthResolve::InColor;
+        let is_pair = renderer.depth_resolve == DepthResolve::InColor;
         self.near.as_mut().map_or(Ok(()), |near| near.fraction.prepare(is_pair))
     }
 

@@ -5,7 +5,9 @@ use std::cell::RefCell;
 use super::fallback::NearSwitch;
 use super::method::{EyeTarget, StereoError};
 use crate::view::{DepthImage, GpuScene, LitScene, Renderer};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, EyesError, GuardBand, SynthesisViews, ViewLayer};
+use yoro::eyes::{
+    DepthConvention, DepthRange, Eye, EyePair, EyesError, GuardBand, SynthesisViews, ViewLayer,
+};
 use yoro_gl::GlError;
 
 /// A frame to render: its scene, its eyes and their targets.
@@ -14,7 +16,7 @@ pub(super) struct Frame<'a> {
     pub(super) scene: LitScene<'a>,
     /// The eyes. Their depth is reversed, as everywhere in the renderer.
     pub(super) pair: EyePair,
-    layer: ViewLayer,
+    pub(super) layer: ViewLayer,
     /// The convention of the depth that targets receive.
     convention: DepthConvention,
     to: &'a [EyeTarget<'a>; 2],
@@ -53,11 +55,6 @@ impl<'a> Frame<'a> {
     pub(super) fn measure_depth(&self, depth: &DepthImage) -> Result<(), GlError> {
         let mut near = self.near.borrow_mut();
         near.as_mut().map_or(Ok(()), |near| near.measure(depth, self.pair.size, &self.pair.depth))
-    }
-
-    /// Returns the eyes as a layer, with reversed depth.
-    pub(super) fn layer(&self) -> &ViewLayer {
-        &self.layer
     }
 
     /// Returns the view to render for both eyes, and how its pixels move.

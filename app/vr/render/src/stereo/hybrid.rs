@@ -61,7 +61,7 @@ impl StereoMethod for Hybrid {
                     renderer.draw_all(targets, &frame.scene, std::slice::from_ref(&view), depth, Some(to))?;
             }
             if !is_complete {
-                renderer.develop(targets, &view, Eye::Left, [0, 0], &to.color, None);
+                renderer.composite(targets, &view, Eye::Left, [0, 0], &to.color, None);
             }
             if depth {
                 frame.write_depth(eye, &targets.depth(view.size, Eye::Left, [0, 0]));

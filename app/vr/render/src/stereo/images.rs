@@ -122,9 +122,9 @@ impl StereoImages {
 
 #[cfg(test)]
 mod tests {
+    use crate::view::RenderSettings;
     use glam::{Quat, Vec3};
     use yoro::eyes::{DepthConvention, Foveation, Gaze};
-    use crate::view::RenderSettings;
     use yoro_context::{Backend, Headless};
 
     use super::super::tests::{Rig, equal_share, local, pair};
@@ -234,8 +234,7 @@ mod tests {
         let pair = pair(Eye::Right, DepthConvention::Standard);
         let axes = Gaze::Axes(pair.axes());
         let views = pair.stereo_views(Some(&foveation()), axes).unwrap();
-        let mut subject =
-            StereoSession::new(gl, Method::Conventional.into(), &settings, &options()).unwrap();
+        let mut subject = StereoSession::new(gl, Method::Conventional.into(), &settings, &options()).unwrap();
         let whole = rig.render(&mut subject, &pair);
         let foveated = composed(&mut rig, &mut subject, &views);
         let [want, got] = [&whole, &foveated].map(|images| fovea(&images[1], &views, Eye::Right));

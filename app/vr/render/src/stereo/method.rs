@@ -132,7 +132,7 @@ pub struct MotionTarget {
     pub to: Destination,
     /// The eye in the frame that vectors point to, the one that was rendered before the scene's time last changed. Its size
     /// does not matter.
-    pub former: View,
+    pub previous: View,
     /// The range of depth in normalized device coordinates.
     pub ndc: Ndc,
 }

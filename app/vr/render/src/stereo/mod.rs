@@ -15,7 +15,7 @@ mod near_field_policy;
 mod near_fraction;
 mod offline;
 mod options;
-mod over;
+mod overlay;
 mod paper;
 mod pipeline;
 mod rate;

@@ -32,14 +32,14 @@ impl StereoMethod for Mono {
         renderer.draw_all(targets, &frame.scene, std::slice::from_ref(source), wants_depth, None)?;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let (origin, other_origin) = (views.dominant_crop, origin_in(source, &views.target));
-        renderer.develop(targets, source, Eye::Left, origin, &frame.to(dominant).color, None);
+        renderer.composite(targets, source, Eye::Left, origin, &frame.to(dominant).color, None);
         if other_origin == origin {
             let gl = &renderer.gl;
             let [from, to] = [dominant, other].map(|eye| frame.to(eye).color);
             let pass = gl.pass("copy").read("copied", from.image(Format::Rgba8));
             pass.write([to.image(Format::Rgba8)]).run(|| gl.copy(&from, &to));
         } else {
-            renderer.develop(targets, source, Eye::Left, other_origin, &frame.to(other).color, None);
+            renderer.composite(targets, source, Eye::Left, other_origin, &frame.to(other).color, None);
         }
         for (eye, origin) in [(dominant, origin), (other, other_origin)] {
             if frame.wants_depth(eye) {

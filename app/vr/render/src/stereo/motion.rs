@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::frame::Frame;
 use super::method::{MotionTarget, StereoError};
-use crate::view::{DepthImage, Step, VectorPass};
+use crate::view::{DepthImage, RenderedDepth, Step, VectorPass};
 use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, VectorSpace, VectorsOf, View, ViewLayer};
 use yoro::opengl::{Motion, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
@@ -21,13 +21,13 @@ impl<'a> MotionFrame<'a> {
     pub(super) fn new(frame: &'a Frame) -> Option<MotionFrame<'a>> {
         let [left, right] = Eye::BOTH.map(|eye| frame.to(eye).motion.as_ref());
         let targets = [left?, right?];
-        let former = targets.map(|target| target.former);
+        let previous = targets.map(|target| target.previous);
         let depth = frame.written(frame.pair.depth);
         let now = EyePair { size: targets[0].to.size, depth, ..frame.pair };
         let then = EyePair {
-            poses: former.map(|view| view.pose),
-            frusta: former.map(|view| view.frustum),
-            depth: frame.written(former[0].depth),
+            poses: previous.map(|view| view.pose),
+            frusta: previous.map(|view| view.frustum),
+            depth: frame.written(previous[0].depth),
             ..now
         };
         Some(MotionFrame { targets, now, then })
@@ -50,7 +50,8 @@ pub(super) fn write_rendered(
     let Some(motion) = MotionFrame::new(frame) else { return Ok(false) };
     let step = motion.step(eye, motion.now.view(eye));
     pass.draw_moving(&frame.scene, &step)?;
-    pass.write((depth, &frame.pair.view(eye)), &step, [0, 0], &motion.targets[eye.index()].to)?;
+    let view = &frame.pair.view(eye);
+    pass.write(RenderedDepth { depth, view }, &step, [0, 0], &motion.targets[eye.index()].to)?;
     Ok(true)
 }
 
@@ -78,7 +79,7 @@ impl SynthesizedMotion {
     pub(super) fn write(
         &mut self,
         frame: &Frame,
-        (depth, rendered): (&DepthImage, &View),
+        rendered: RenderedDepth,
         guard_band: GuardBand,
     ) -> Result<bool, StereoError> {
         let Some(motion) = MotionFrame::new(frame) else { return Ok(false) };
@@ -91,7 +92,7 @@ impl SynthesizedMotion {
             other => other,
         };
         let views = [motion.now, motion.then]
-            .map(|eyes| ViewLayer { eyes, ..*frame.layer() }.synthesis_views(guard_band));
+            .map(|eyes| ViewLayer { eyes, ..frame.layer }.synthesis_views(guard_band));
         let [Ok(now), Ok(then)] = views else { return Ok(false) };
         let ndc = motion.targets[dominant.other().index()].ndc;
         let warp = match now.motion(&then, VectorSpace { ndc, of: VectorsOf::Eye }) {
@@ -101,10 +102,9 @@ impl SynthesizedMotion {
         let step = motion.step(dominant, now.source);
         self.source.resize(now.source.size)?;
         self.pass.draw_moving(&frame.scene, &step)?;
-        let images = (depth, rendered);
-        self.pass.write(images, &step, [0, 0], &Destination::whole(&self.source))?;
+        self.pass.write(rendered, &step, [0, 0], &Destination::whole(&self.source))?;
         let own = &motion.targets[dominant.index()].to;
-        self.pass.write(images, &step, now.dominant_crop, own)?;
+        self.pass.write(rendered, &step, now.dominant_crop, own)?;
         let source = Source::new(self.source.color(0).raw(), self.source.depth().raw());
         self.motion.synthesize(source, &warp, &motion.targets[dominant.other().index()].to)?;
         Ok(true)

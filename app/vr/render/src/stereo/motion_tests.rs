@@ -27,7 +27,7 @@ fn vectors(
     let images = [target(), target()];
     let motion = |eye: Eye| MotionTarget {
         to: Destination { origin: [2, 3], size: SIZE, ..Destination::whole(&images[eye.index()]) },
-        former: then.view(eye),
+        previous: then.view(eye),
         ndc,
     };
     let report = rig.render_with(session, now, |eye, to| EyeTarget { motion: Some(motion(eye)), ..to });
@@ -98,7 +98,7 @@ fn vectors_of_both_eyes_are_those_of_two_renders() {
         raised.frusta[0].top += 0.2;
         let to = |eye: Eye, to| {
             let target = Destination { framebuffer: None, origin: [0, 0], size: SIZE };
-            EyeTarget { motion: Some(MotionTarget { to: target, former: raised.view(eye), ndc }), ..to }
+            EyeTarget { motion: Some(MotionTarget { to: target, previous: raised.view(eye), ndc }), ..to }
         };
         assert!(!rig.render_with(&mut one, &now, to).has_motion);
     }
@@ -130,13 +130,13 @@ fn frames_of_half_the_rate_compile_and_allocate_nothing() {
         let gl = head.gl();
         let settings = RenderSettings { msaa: 4, ..local() };
         let mut rig = Rig::of(gl, &settings, moving_scene());
-        assert_eq!(rig.scene().renderer.nearest_depth(), way);
+        assert_eq!(rig.scene().renderer.depth_resolve, way);
         let eyes = pair(Eye::Right, DepthConvention::Reversed);
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         let vectors = RenderTarget::new(gl, SIZE, &formats, Some(Format::Depth32F)).unwrap();
         let motion = MotionTarget {
             to: Destination::whole(&vectors),
-            former: eyes.view(Eye::Left),
+            previous: eyes.view(Eye::Left),
             ndc: Ndc::ZeroToOne,
         };
         for method in [Method::Conventional, Method::Synthesized] {

@@ -12,7 +12,7 @@ const ROOM: f32 = 0.7;
 /// Leaves every second frame to the runtime while the full rate is missed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RateChooser {
-    is_half: bool,
+    pub(super) is_half: bool,
     begin_ns: Option<i64>,
     frames: u32,
     late: u32,
@@ -21,11 +21,6 @@ pub(super) struct RateChooser {
 }
 
 impl RateChooser {
-    /// True if the runtime is to make every second frame.
-    pub(super) fn is_half(&self) -> bool {
-        self.is_half
-    }
-
     /// Takes a frame into account. Returns true if the rate has changed.
     pub(super) fn frame(&mut self, load: &FrameLoad) -> bool {
         let begin = *self.begin_ns.get_or_insert(load.ended_ns);
@@ -63,7 +58,7 @@ mod tests {
                 display_hz: 72.0,
                 late_refreshes: u32::from(late > 0 && i % late == 0),
                 gpu: gpu_ms.map(|ms| Cost { frames_ago: 0, ms }),
-                thermal_headroom: None,
+                ..FrameLoad::default()
             };
             chooser.frame(&load)
         })
@@ -72,14 +67,14 @@ mod tests {
     #[test]
     fn half_the_rate_while_the_full_one_is_missed() {
         let mut chooser = RateChooser::default();
-        assert!(!run(&mut chooser, 0, 20, Some(9.0)) && !chooser.is_half());
+        assert!(!run(&mut chooser, 0, 20, Some(9.0)) && !chooser.is_half);
         chooser.interrupt();
-        assert!(run(&mut chooser, 0, 5, Some(15.0)) && chooser.is_half());
+        assert!(run(&mut chooser, 0, 5, Some(15.0)) && chooser.is_half);
         chooser.interrupt();
         assert!(!run(&mut chooser, 0, 0, Some(10.0)), "no room for every frame");
         chooser.interrupt();
         assert!(!run(&mut chooser, 0, 0, None), "nobody knows");
         chooser.interrupt();
-        assert!(run(&mut chooser, 0, 0, Some(9.0)) && !chooser.is_half());
+        assert!(run(&mut chooser, 0, 0, Some(9.0)) && !chooser.is_half);
     }
 }

@@ -30,7 +30,7 @@ pub enum FrameTargets<'a> {
 }
 
 /// What a frame cost, when it was handed to the display.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameLoad {
     /// The time at which the frame ended, in nanoseconds.
     pub ended_ns: i64,
@@ -132,12 +132,12 @@ impl StereoSession {
     }
 
     /// True if the display's runtime is to make the frame after the next one of this session, from motion vectors.
-    pub fn leaves_frames_to_runtime(&self) -> bool {
+    pub fn uses_runtime_frame_synthesis(&self) -> bool {
         self.options.motion_vectors
             && match self.options.frame_rate {
                 FrameRate::Full => false,
                 FrameRate::Half => true,
-                FrameRate::Auto => self.rate.is_half(),
+                FrameRate::Auto => self.rate.is_half,
             }
     }
 
@@ -246,10 +246,7 @@ impl StereoSession {
     }
 
     /// Returns the methods of a path, and what measures the dominant eye's depth for later frames.
-    fn methods(
-        &mut self,
-        path: StereoPath,
-    ) -> Result<(&mut LayerMethods, Option<&mut NearSwitch>), GlError> {
+    fn methods(&mut self, path: StereoPath) -> Result<(&mut LayerMethods, Option<&mut NearSwitch>), GlError> {
         if path == StereoPath::TwoViews {
             self.two_renders()?;
         }
@@ -298,11 +295,9 @@ impl StereoSession {
         if let Some(auto) = &mut self.auto {
             auto.end_frame(load);
         }
-        if self.options.motion_vectors
-            && self.options.frame_rate == FrameRate::Auto
-            && self.rate.frame(load)
+        if self.options.motion_vectors && self.options.frame_rate == FrameRate::Auto && self.rate.frame(load)
         {
-            let which = if self.rate.is_half() { "every second frame" } else { "every frame" };
+            let which = if self.rate.is_half { "every second frame" } else { "every frame" };
             log::info!("frame-rate: {which} is rendered");
         }
     }

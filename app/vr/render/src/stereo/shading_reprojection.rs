@@ -7,7 +7,7 @@
 
 use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
-use super::over::{Over, OverlaySurfaces};
+use super::overlay::{OverlayPass, OverlaySurfaces};
 use crate::view::{GpuScene, Layout, Renderer, Reprojection, Targets};
 use yoro::eyes::{DisparityMap, Eye, GuardBand};
 
@@ -21,7 +21,7 @@ pub struct ShadingReprojection {
 struct Made {
     dominant: Targets,
     second: Targets,
-    over: Over,
+    over: OverlayPass,
 }
 
 impl StereoMethod for ShadingReprojection {
@@ -31,7 +31,8 @@ impl StereoMethod for ShadingReprojection {
         renderer.prepare_reprojected(scene)?;
         if self.made.is_none() {
             let targets = || renderer.targets(Layout::Single);
-            self.made = Some(Made { dominant: targets()?, second: targets()?, over: Over::new(renderer)? });
+            self.made =
+                Some(Made { dominant: targets()?, second: targets()?, over: OverlayPass::new(renderer)? });
         }
         Ok(())
     }
@@ -49,7 +50,7 @@ impl StereoMethod for ShadingReprojection {
         let (view, other_view) = (pair.view(eye), pair.view(other));
         renderer.draw_dominant(dominant, &frame.scene, &view)?;
         renderer.ink_beside(dominant, &view)?;
-        renderer.shine(dominant, &view, Eye::Left);
+        renderer.render_bloom(dominant, &view, Eye::Left);
         let from = Reprojection {
             color: dominant.resolved.color(0),
             depth: dominant.depth(view.size, Eye::Left, [0, 0]).texture,
@@ -59,14 +60,14 @@ impl StereoMethod for ShadingReprojection {
         };
         let wants_depth = frame.wants_depth(other);
         renderer.draw_reprojected(second, &frame.scene, &other_view, &from, wants_depth)?;
-        renderer.develop(second, &other_view, Eye::Left, [0, 0], &frame.to(other).color, None);
+        renderer.composite(second, &other_view, Eye::Left, [0, 0], &frame.to(other).color, None);
         if wants_depth {
             frame.write_depth(other, &second.depth(view.size, Eye::Left, [0, 0]));
         }
         let surfaces = OverlaySurfaces { near: None, transparent: frame.scene.is_transparent_in(&view) };
         let (place, has_depth) = over.begin(frame, eye, &surfaces)?;
         let part = surfaces.depth_part(frame, eye).filter(|_| has_depth);
-        renderer.develop(dominant, &view, Eye::Left, [0, 0], &place, part);
+        renderer.composite(dominant, &view, Eye::Left, [0, 0], &place, part);
         over.finish(frame, eye, &surfaces);
         Ok(false)
     }

@@ -47,8 +47,8 @@ impl StereoMethod for SinglePass {
         for eye in Eye::BOTH {
             let view = &views[eye.index()];
             frame.renderer.ink_layer(targets, view, eye)?;
-            frame.renderer.shine(targets, view, eye);
-            frame.renderer.develop(targets, view, eye, [0, 0], &frame.to(eye).color, None);
+            frame.renderer.render_bloom(targets, view, eye);
+            frame.renderer.composite(targets, view, eye, [0, 0], &frame.to(eye).color, None);
             if frame.wants_depth(eye) {
                 frame.write_depth(eye, &targets.depth(view.size, eye, [0, 0]));
             }

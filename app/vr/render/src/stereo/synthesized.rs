@@ -6,16 +6,16 @@ use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
 use super::motion::SynthesizedMotion;
 use super::options::{Pipeline, PipelineOptions, StereoOptions};
-use super::over::{Over, OverlaySurfaces};
+use super::overlay::{OverlayPass, OverlaySurfaces};
 use super::pipeline::Synthesis;
-use crate::view::{DepthResolve, GpuScene, Layout, Renderer, Selection, Targets};
+use crate::view::{DepthResolve, GpuScene, Layout, RenderedDepth, Renderer, Selection, Targets};
 use yoro::eyes::{Eye, EyePair};
 use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
 
 /// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects.
 ///
-/// Bloom is added where an eye is written last: by the synthesis, and where the rendered eye is developed. Near objects
+/// Bloom is added where an eye is written last: by the synthesis, and where the rendered eye is composited. Near objects
 /// and transparent surfaces are drawn over both in the same passes.
 pub struct Synthesized {
     gl: Rc<Context>,
@@ -28,7 +28,7 @@ pub struct Synthesized {
 /// What depends on the renderer.
 struct Made {
     targets: Targets,
-    over: Over,
+    over: OverlayPass,
     synthesizers: Synthesizers,
     /// Makes more of the depth of one sample, where a driver gives no more.
     guess: Option<GuessedDepth>,
@@ -70,8 +70,8 @@ impl Synthesized {
         Synthesized { gl: gl.clone(), options: *options, made: None, motion: None }
     }
 
-    /// True if the picture is complete before the synthesis, as in the paper, instead of being developed after it.
-    fn develops_first(&self) -> bool {
+    /// True if the picture is complete before the synthesis, as in the paper, instead of being composited after it.
+    fn composites_first(&self) -> bool {
         self.options.synthesis.pipeline == Pipeline::Paper
     }
 
@@ -86,19 +86,19 @@ impl StereoMethod for Synthesized {
     fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
         let has_over = scene.has_transparent() || self.options.near_field.is_some();
         renderer.prepare_over(scene)?;
-        let pairs = renderer.nearest_depth() == DepthResolve::InColor;
-        let is_first = renderer.nearest_depth() == DepthResolve::SingleSample;
+        let pairs = renderer.depth_resolve == DepthResolve::InColor;
+        let is_first = renderer.depth_resolve == DepthResolve::SingleSample;
         let made = match &mut self.made {
             Some(made) => made,
             slot => slot.insert(Made {
                 guess: is_first.then(|| GuessedDepth::new(&self.gl, &Options::default())).transpose()?,
                 targets: renderer.targets(Layout::Single)?,
-                over: Over::new(renderer)?,
+                over: OverlayPass::new(renderer)?,
                 synthesizers: Synthesizers {
                     gl: self.gl.clone(),
                     options: self.options.synthesis,
                     pairs,
-                    bloom: renderer.develops(),
+                    bloom: renderer.has_composite(),
                     made: [None, None],
                 },
             }),
@@ -123,15 +123,15 @@ impl StereoMethod for Synthesized {
         let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
         let surfaces = OverlaySurfaces { near, transparent };
         let selection = self.selection(pair);
-        let develops_first = self.develops_first();
+        let composites_first = self.composites_first();
         let Some(Made { targets, over, synthesizers, guess }) = &mut self.made else { return Ok(false) };
         renderer.draw_source(targets, &frame.scene, &views.source, selection)?;
-        let is_developed = develops_first && renderer.develops();
-        if is_developed {
+        let is_composited = composites_first && renderer.has_composite();
+        if is_composited {
             let to = Destination::whole(targets.picture(views.source.size)?);
-            renderer.develop(targets, &views.source, Eye::Left, [0, 0], &to, None);
+            renderer.composite(targets, &views.source, Eye::Left, [0, 0], &to, None);
         }
-        let picture = targets.developed.as_ref().filter(|_| is_developed).unwrap_or(targets.color());
+        let picture = targets.composited.as_ref().filter(|_| is_composited).unwrap_or(targets.color());
         let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
         let mut source = Source::new(picture.color(0).raw(), depth.texture.raw());
         if let Some(guess) = guess {
@@ -143,7 +143,7 @@ impl StereoMethod for Synthesized {
         source.bloom = targets
             .bloom
             .as_ref()
-            .filter(|_| !is_developed)
+            .filter(|_| !is_composited)
             .map(|bloom| Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() });
         synthesis.synthesize(source, &views.warp, &to)?;
         over.finish(frame, other, &surfaces);
@@ -151,10 +151,11 @@ impl StereoMethod for Synthesized {
         frame.measure_depth(&targets.depth(views.source.size, Eye::Left, views.dominant_crop))?;
         let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
         let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
-        renderer.develop(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
+        renderer.composite(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
         over.finish(frame, dominant, &surfaces);
         let Some(motion) = &mut self.motion else { return Ok(false) };
         let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
-        motion.write(frame, (&depth, &views.source), self.options.guard_band)
+        let rendered = RenderedDepth { depth: &depth, view: &views.source };
+        motion.write(frame, rendered, self.options.guard_band)
     }
 }

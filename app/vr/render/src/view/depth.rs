@@ -56,6 +56,13 @@ pub struct DepthImage<'a> {
     pub convention: DepthConvention,
 }
 
+impl DepthImage<'_> {
+    /// Returns the index of the variant of a [`DepthProgram`] that reads the image.
+    fn variant(&self) -> usize {
+        if self.layer.is_some() { 2 } else { usize::from(self.is_pair) }
+    }
+}
+
 /// A program that reads `include/depth_map.glsl`, in variants for each kind of texture. They are compiled when first
 /// asked for.
 pub(crate) struct DepthProgram {
@@ -77,8 +84,7 @@ impl DepthProgram {
 
     /// Binds the variant for an image, which is compiled unless it was prepared, and its texture to unit 0.
     pub(crate) fn bind(&mut self, depth: &DepthImage) -> Result<&Program, GlError> {
-        let i = if depth.layer.is_some() { 2 } else { usize::from(depth.is_pair) };
-        let program = self.variant(i)?;
+        let program = self.variant(depth.variant())?;
         program
             .bind()
             .texture_of("depth_map", 0, depth.texture)
@@ -101,8 +107,7 @@ impl DepthProgram {
 /// reproject images with it.
 pub struct DepthCopy {
     gl: Rc<Context>,
-    /// For whole textures, pairs of depths, and layers; the latter two where the driver has them.
-    programs: [Option<Program>; 3],
+    program: DepthProgram,
 }
 
 impl DepthCopy {
@@ -111,20 +116,21 @@ impl DepthCopy {
     /// # Errors
     /// As [`Program::new`].
     pub fn new(gl: &Rc<Context>) -> Result<DepthCopy, GlError> {
-        let compile = |define: Option<&'static str>| {
-            let defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
-            Program::new(gl, ShaderSource::Screen("render/depth_write.frag"), &defines)
-        };
+        let mut program = DepthProgram::new(gl, "render/depth_write.frag");
         let capabilities = gl.capabilities();
-        let pairs = capabilities.sample_masks.then(|| compile(Some("DEPTH_PAIRS"))).transpose()?;
-        let layers = capabilities.multiview.then(|| compile(Some("LAYER"))).transpose()?;
-        Ok(DepthCopy { gl: gl.clone(), programs: [Some(compile(None)?), pairs, layers] })
+        for (i, is_needed) in
+            [true, capabilities.sample_masks, capabilities.multiview].into_iter().enumerate()
+        {
+            if is_needed {
+                program.variant(i)?;
+            }
+        }
+        Ok(DepthCopy { gl: gl.clone(), program })
     }
 
     /// Writes the destination's depth, in this convention.
     pub fn run(&self, from: &DepthImage, to: &Destination, convention: DepthConvention) {
-        let i = if from.layer.is_some() { 2 } else { usize::from(from.is_pair) };
-        let Some(program) = &self.programs[i] else { return };
+        let Some(program) = &self.program.made[from.variant()] else { return };
         let pass = self.gl.pass("depth copy").read("depth_map", from.texture);
         pass.write([to.image(Format::Depth32F)]).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);

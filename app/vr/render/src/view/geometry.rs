@@ -11,9 +11,9 @@ use super::uniforms::{depth_test, eye_to_clip};
 use yoro::eyes::{DepthRange, Eye, View};
 use yoro_gl::{Blend, Context, GlError, Program, RasterState, ShaderSource};
 
-/// A part of the opaque triangles.
+/// Which of the opaque triangles are drawn.
 #[derive(Clone, Copy)]
-pub enum Part<'a> {
+pub enum Surfaces<'a> {
     /// Clusters that a culler lets through, for one view.
     Selected(&'a Culler),
     /// Surfaces between two distances in metres, drawn at the same depth as in the whole view.
@@ -100,7 +100,7 @@ pub type Programs = [Option<Program>; Features::COMBINATIONS];
 /// the material's maps and the shadow map.
 pub struct GeometryPass {
     gl: Rc<Context>,
-    variant: Variant,
+    pub variant: Variant,
     /// True if cut-out materials cover samples by their alpha.
     alpha_to_coverage: bool,
     programs: Programs,
@@ -129,25 +129,20 @@ impl GeometryPass {
         Ok(GeometryPass { gl: gl.clone(), variant, alpha_to_coverage: variant.samples > 1, programs })
     }
 
-    /// Returns the variant of the programs.
-    pub fn variant(&self) -> Variant {
-        self.variant
-    }
-
     /// Returns all programs, for uniforms that are the same in all of them.
     pub fn programs(&self) -> impl Iterator<Item = &Program> {
         self.programs.iter().flatten()
     }
 
     /// Draws into an image of the pass's layout: one view, or both eyes, which must have the same size and depth range.
-    pub fn draw(&self, scene: &GpuScene, views: &[View], part: &Part) {
+    pub fn draw(&self, scene: &GpuScene, views: &[View], surfaces: &Surfaces) {
         let Some(first) = views.first() else { return };
-        match *part {
-            Part::Selected(culler) => {
+        match *surfaces {
+            Surfaces::Selected(culler) => {
                 let eyes = Eyes::new(self.variant.layout, &[*first; 2]);
                 self.draw_culled(scene, first, std::slice::from_ref(culler), &eyes, [0.0, 1.0]);
             }
-            Part::Slice([near, far]) => {
+            Surfaces::Slice([near, far]) => {
                 let depth = DepthRange { near, far, ..first.depth };
                 let sliced: [View; 2] =
                     std::array::from_fn(|i| View { depth, ..*views.get(i).unwrap_or(first) });

@@ -43,4 +43,4 @@ pub use renderer::{RenderedView, Renderer, ViewTargets};
 pub use scene::GpuScene;
 pub use settings::{MAX_POINT_LIGHTS, MSAA, RenderSettings};
 pub(crate) use targets::Targets;
-pub(crate) use vectors::{Step, VectorPass};
+pub(crate) use vectors::{RenderedDepth, Step, VectorPass};

@@ -5,13 +5,13 @@ use glam::{IVec2, Mat3, Vec2, Vec3};
 use super::bloom::Shining;
 use super::cluster::{Culler, Selection};
 use super::depth::DepthImage;
-use super::geometry::{Part, Variant};
+use super::geometry::{Surfaces, Variant};
 use super::layout::Layout;
 use super::light_tiles::LightTiles;
 use super::lights::Lights;
 use super::lit::LitScene;
 use super::rectangle::Rectangle;
-use super::renderer::{Develop, Outlines, Renderer, Resolve};
+use super::renderer::{Composite, Outlines, Renderer, Resolve};
 use super::scene::{FREE_UNIT, GpuScene, MAP_NAMES};
 use super::settings::SAMPLE_DEPTH;
 use super::shadow::ShadowMap;
@@ -84,13 +84,19 @@ impl Renderer {
     }
 
     fn variant(targets: &Targets) -> Variant {
-        let (layout, samples) = (targets.layout(), targets.sample_count());
-        Variant { layout, carried: targets.carries(), ..Variant::plain(samples) }
+        let (layout, samples) = (targets.layout, targets.samples);
+        Variant { layout, carried: targets.carries, ..Variant::plain(samples) }
     }
 
     /// Clears the targets, and draws a part of the scene and the sky behind it.
-    pub(super) fn draw_on_sky(&self, targets: &mut Targets, scene: &LitScene, views: &[View], part: &Part) {
-        self.draw_on_sky_as(targets, scene, views, part, None);
+    pub(super) fn draw_on_sky(
+        &self,
+        targets: &mut Targets,
+        scene: &LitScene,
+        views: &[View],
+        surfaces: &Surfaces,
+    ) {
+        self.draw_on_sky_as(targets, scene, views, surfaces, None);
     }
 
     /// Like [`Renderer::draw_on_sky`]; takes the dominant eye's colours where it sees the surface.
@@ -99,20 +105,20 @@ impl Renderer {
         targets: &mut Targets,
         scene: &LitScene,
         views: &[View],
-        part: &Part,
+        surfaces: &Surfaces,
         from: Option<&Reprojection>,
     ) {
         let view = &views[0];
-        let light = self.illuminate(targets.layout(), scene, views);
+        let light = self.illuminate(targets.layout, scene, views);
         let mut pass = targets.declare(light.declare(self.gl.pass("surfaces")));
         if let Some(from) = from {
             pass = pass.read("dominant_color", from.color).read("depth_map", from.depth);
         }
         pass.run(|| {
-            targets.bind(targets.layout().texture_size(view.size));
+            targets.bind(targets.layout.texture_size(view.size));
             self.gl.clear(Some(view.depth.clear_value()));
             let variant = Variant { reprojected: from.is_some(), ..Renderer::variant(targets) };
-            self.draw_opaque(variant, &light, views, part, |program| {
+            self.draw_opaque(variant, &light, views, surfaces, |program| {
                 if let Some(from) = from {
                     set_reprojection(program, from, view);
                 }
@@ -127,22 +133,22 @@ impl Renderer {
         variant: Variant,
         light: &Illumination,
         views: &[View],
-        part: &Part,
+        surfaces: &Surfaces,
         more: impl Fn(&Program),
     ) {
-        let Some(pass) = self.geometry.iter().find(|pass| pass.variant() == variant) else { return };
+        let Some(pass) = self.geometry.iter().find(|pass| pass.variant == variant) else { return };
         pass.programs().for_each(|program| {
             light.set(program.bind());
             more(program);
         });
-        pass.draw(light.scene, views, part);
+        pass.draw(light.scene, views, surfaces);
     }
 
     /// Draws the sky where nothing was drawn.
     fn draw_sky(&self, targets: &Targets, light: &Illumination, views: &[View]) {
         let variant = Renderer::variant(targets);
         let Some((_, program)) = self.skies.iter().find(|(made, _)| *made == variant) else { return };
-        let layout = targets.layout();
+        let layout = targets.layout;
         // With multiview, one triangle is drawn for both eyes.
         let rays: [Mat3; 2] = std::array::from_fn(|i| view_rays(views.get(i).unwrap_or(&views[0])));
         let drawn = if layout == Layout::Layered { 1 } else { views.len() };
@@ -167,7 +173,7 @@ impl Renderer {
     /// Draws the transparent surfaces over what is in the targets.
     pub(super) fn draw_transparent(&self, targets: &Targets, scene: &LitScene, views: &[View]) {
         if scene.has_transparent() {
-            let light = self.illuminate(targets.layout(), scene, views);
+            let light = self.illuminate(targets.layout, scene, views);
             self.transparent.run(Renderer::variant(targets), scene, views, &light);
         }
     }
@@ -181,7 +187,7 @@ impl Renderer {
         if let Some(near) = near {
             let culler = Culler::selecting(view, near);
             light.declare(self.gl.pass("near objects")).run(|| {
-                self.draw_opaque(variant, &light, views, &Part::Selected(&culler), |_| {});
+                self.draw_opaque(variant, &light, views, &Surfaces::Selected(&culler), |_| {});
             });
         }
         if scene.has_transparent() {
@@ -199,25 +205,25 @@ impl Renderer {
         ink: bool,
         to: Option<&Destination>,
     ) -> Result<(), GlError> {
-        match targets.onto() {
+        match targets.onto {
             Onto::Resolved if !depth && !ink => targets.resolved.discard_depth(),
             Onto::Resolved => {}
             Onto::Tile => {
-                if targets.carries()
+                if targets.carries
                     && let Some(carry) = &self.carry
                 {
                     self.gl.pass("carry").run(|| carry.run());
                 }
-                if let Some(tile) = targets.tile() {
+                if let Some(tile) = &targets.tile {
                     tile.discard_depth();
                 }
             }
             Onto::Samples => self.resolve_samples(targets, view, depth, ink, to),
         }
         targets.has_depth = depth;
-        let is_drawn = targets.onto() == Onto::Samples && self.reads(targets);
+        let is_drawn = targets.onto == Onto::Samples && self.reads(targets);
         // An array's outlines are drawn eye by eye.
-        if ink && !is_drawn && targets.layout() != Layout::Layered {
+        if ink && !is_drawn && targets.layout != Layout::Layered {
             targets.ink_picture()?;
             self.draw_ink(targets, view, Eye::Left);
         }
@@ -226,7 +232,7 @@ impl Renderer {
 
     /// Draws the outlines of an eye that is a layer of the targets, if the style has outlines.
     pub(crate) fn ink_layer(&self, targets: &mut Targets, view: &View, eye: Eye) -> Result<(), GlError> {
-        if self.ink && targets.layout() == Layout::Layered {
+        if self.ink && targets.layout == Layout::Layered {
             targets.ink_picture()?;
             self.draw_ink(targets, view, eye);
         }
@@ -251,14 +257,14 @@ impl Renderer {
             self.read_samples(targets, view, ink, &targets.resolved);
             return;
         }
-        if targets.carries()
+        if targets.carries
             && let Some(carry) = &self.carry
         {
             self.gl.pass("carry").run(|| carry.run());
         }
         let whole = Destination::whole(&targets.resolved);
         let to = to.unwrap_or(&whole);
-        let pair = targets.pair().filter(|_| targets.carries());
+        let pair = targets.pair.as_ref().filter(|_| targets.carries);
         let nearest = match pair {
             Some(pair) => Some(pair.color(0)),
             None => (depth || ink).then(|| targets.resolved.depth()),
@@ -300,7 +306,7 @@ impl Renderer {
 
     /// Draws outlines over the resolved picture, or over one of its layers, into another one.
     fn draw_ink(&self, targets: &Targets, view: &View, eye: Eye) {
-        let layer = targets.layout() == Layout::Layered;
+        let layer = targets.layout == Layout::Layered;
         let variant = Resolve { samples: 1, ink: true, depth: false, layer };
         let (Some((_, program)), Some(inked)) =
             (self.resolve.iter().find(|(made, _)| *made == variant), &targets.inked)
@@ -336,7 +342,7 @@ impl Renderer {
 
     /// Draws `render/resolve.frag` for each eye of an image, or for one layer.
     fn draw_resolve(&self, program: &Program, targets: &Targets, view: &View, layer: Option<Eye>) {
-        let layout = targets.layout();
+        let layout = targets.layout;
         let outlines = Outlines::of(view, targets.detail);
         let vector = |v: [u32; 2]| IVec2::from(v.map(|n| n as i32));
         program
@@ -359,12 +365,12 @@ impl Renderer {
     }
 
     /// Computes the bloom of an eye's image in the targets.
-    pub(crate) fn shine(&self, targets: &Targets, view: &View, eye: Eye) {
+    pub(crate) fn render_bloom(&self, targets: &Targets, view: &View, eye: Eye) {
         if let Some((pass, bloom)) = self.bloom.as_ref().zip(targets.bloom.as_ref()) {
             let shining = Shining {
                 picture: targets.color().color(0),
                 layer: targets.color_layer(eye),
-                origin: targets.layout().origin(view.size, eye),
+                origin: targets.layout.origin(view.size, eye),
                 size: view.size,
             };
             pass.run(bloom, &shining, self.settings.exposure);
@@ -373,7 +379,7 @@ impl Renderer {
 
     /// Writes a part of an eye's image, from pixel `crop` of the eye on, with bloom. In the rectangle `depth` of the target
     /// it also writes the depth of the image, to draw more over it.
-    pub(crate) fn develop(
+    pub(crate) fn composite(
         &self,
         targets: &Targets,
         view: &View,
@@ -382,19 +388,19 @@ impl Renderer {
         to: &Destination,
         depth: Option<Rectangle>,
     ) {
-        let kind = Develop { bloom: self.bloom.is_some(), ..Develop::default() };
-        self.develop_as(targets, view, eye, crop, to, depth, kind);
+        let kind = Composite { bloom: self.bloom.is_some(), ..Composite::default() };
+        self.composite_as(targets, view, eye, crop, to, depth, kind);
     }
 
     /// Writes a part of an image and its depth, without bloom, into other targets.
     fn load(&self, from: &Targets, view: &View, crop: [u32; 2], targets: &Targets, to: &Destination) {
-        let carries = if targets.carries() { targets.sample_count() } else { 0 };
-        let kind = Develop { carries, ..Develop::default() };
-        self.develop_as(from, view, Eye::Left, crop, to, Some(Rectangle::whole(to.size)), kind);
+        let carries = if targets.carries { targets.samples } else { 0 };
+        let kind = Composite { carries, ..Composite::default() };
+        self.composite_as(from, view, Eye::Left, crop, to, Some(Rectangle::whole(to.size)), kind);
     }
 
     #[allow(clippy::too_many_arguments, reason = "a pass names what it reads and writes")]
-    fn develop_as(
+    fn composite_as(
         &self,
         targets: &Targets,
         view: &View,
@@ -402,12 +408,12 @@ impl Renderer {
         crop: [u32; 2],
         to: &Destination,
         depth: Option<Rectangle>,
-        kind: Develop,
+        kind: Composite,
     ) {
         // Outlines of an array's eye are in a picture of its own.
         let layer = targets.color_layer(eye);
         let is_alone = targets.layer(eye).is_some() && layer.is_none();
-        let corner = if is_alone { [0, 0] } else { targets.layout().origin(view.size, eye) };
+        let corner = if is_alone { [0, 0] } else { targets.layout.origin(view.size, eye) };
         let bloom = targets.bloom.as_ref().filter(|_| kind.bloom);
         if depth.is_none() && bloom.is_none() && layer.is_none() {
             let from = [0, 1].map(|i| corner[i] + crop[i]);
@@ -415,10 +421,10 @@ impl Renderer {
             let pass = self.gl.pass("copy").read("copied", copied).write([to.image(Format::Rgba8)]);
             return pass.run(|| targets.color().copy_color(from, to));
         }
-        let plain = Develop { layer: layer.is_some(), ..kind };
+        let plain = Composite { layer: layer.is_some(), ..kind };
         let offset = [0, 1].map(|i| (corner[i] + crop[i]) as i32 - to.origin[i] as i32);
-        let draw = |variant: Develop, image: Option<&DepthImage>, part: &Rectangle| {
-            let Some((_, program)) = self.develop.iter().find(|(made, _)| *made == variant) else { return };
+        let draw = |variant: Composite, image: Option<&DepthImage>, part: &Rectangle| {
+            let Some((_, program)) = self.composite.iter().find(|(made, _)| *made == variant) else { return };
             if part.size.contains(&0) {
                 return;
             }
@@ -443,7 +449,7 @@ impl Renderer {
             self.gl.draw_screen();
         };
         let color = Image { size: to.size, ..targets.color().color(0).image() };
-        let mut pass = self.gl.pass("develop").read("color_map", color).write([to.image(Format::Rgba8)]);
+        let mut pass = self.gl.pass("composite").read("color_map", color).write([to.image(Format::Rgba8)]);
         if let Some(bloom) = bloom {
             pass = pass.read("bloom", bloom.result());
         }
@@ -457,7 +463,7 @@ impl Renderer {
             self.gl.overwrite(to, 1, depth.is_some());
             let Some(part) = depth else { return draw(plain, None, &Rectangle::whole(to.size)) };
             let image = targets.depth(view.size, eye, crop);
-            draw(Develop { depth: Some(image.is_pair), ..plain }, Some(&image), &part);
+            draw(Composite { depth: Some(image.is_pair), ..plain }, Some(&image), &part);
             part.around(to.size).iter().for_each(|part| draw(plain, None, part));
         });
     }
@@ -472,7 +478,7 @@ impl Renderer {
         slice: [f32; 2],
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
-        self.draw_on_sky(targets, scene, &[*view], &Part::Slice(slice));
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Slice(slice));
         self.resolve(targets, view, true, false, None)
     }
 
@@ -494,12 +500,12 @@ impl Renderer {
             let to = targets.destination(view.size);
             self.load(far, far_view, crop, targets, &to);
             if let Some(slice) = slice {
-                self.draw_opaque(Renderer::variant(targets), &light, views, &Part::Slice(slice), |_| {});
+                self.draw_opaque(Renderer::variant(targets), &light, views, &Surfaces::Slice(slice), |_| {});
             }
         });
         self.draw_transparent(targets, scene, views);
         self.resolve(targets, view, depth, self.ink, None)?;
-        self.shine(targets, view, Eye::Left);
+        self.render_bloom(targets, view, Eye::Left);
         Ok(())
     }
 
@@ -513,7 +519,7 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
         let culler = Culler::of_view(view);
-        self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler));
         self.resolve(targets, view, true, false, None)
     }
 
@@ -528,10 +534,10 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(depth), None)?;
         let culler = Culler::of_view(view);
-        self.draw_on_sky_as(targets, scene, &[*view], &Part::Selected(&culler), Some(from));
+        self.draw_on_sky_as(targets, scene, &[*view], &Surfaces::Selected(&culler), Some(from));
         self.draw_transparent(targets, scene, std::slice::from_ref(view));
         self.resolve(targets, view, depth, self.ink, None)?;
-        self.shine(targets, view, Eye::Left);
+        self.render_bloom(targets, view, Eye::Left);
         Ok(())
     }
 }

@@ -8,8 +8,8 @@ use crate::fixture::quad;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
 use yoro_assets::{Alpha, Material, Model, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
-use yoro_test_support::record::Recorder;
 use yoro_gl::Capabilities;
+use yoro_test_support::record::Recorder;
 
 const SIZE: [u32; 2] = [96, 64];
 
@@ -137,7 +137,7 @@ fn drivers_differ_in_depth_at_edges_alone() {
         let view = view(DepthConvention::Reversed);
         let drawn = [&best, &carrying, &least].map(|head| {
             let mut rig = Rig::new(head.gl(), scene(style), &with_samples(4));
-            let way = rig.renderer.nearest_depth();
+            let way = rig.renderer.depth_resolve;
             let drawn = rig.draw(&view, Selection::All);
             let picture = drawn.color.read_rgba8(0, [0, 0], view.size);
             (way, picture, depths(head.gl(), &drawn.depth, &view))
@@ -171,7 +171,7 @@ fn carried_depth_is_that_of_a_sample() {
     let view = straight_on(DepthConvention::Reversed);
     for samples in [2, 4].into_iter().filter(|n| head.gl().capabilities().samples.contains(n)) {
         let mut rig = Rig::new(head.gl(), scene.clone(), &with_samples(samples));
-        assert_eq!(rig.renderer.nearest_depth(), DepthResolve::InColor);
+        assert_eq!(rig.renderer.depth_resolve, DepthResolve::InColor);
         let drawn = rig.draw(&view, Selection::All);
         assert!(drawn.depth.is_pair);
         for depth in depths(head.gl(), &drawn.depth, &view) {

@@ -3,7 +3,7 @@
 //!
 //! opaque surfaces -> sky -> (transparent surfaces) -> average of the samples, and their nearest depth if something
 //! reads it -> bloom. Everything before the bloom is one pass on a tile-based GPU. Bloom is added where an eye is
-//! written last: by the synthesis, or by [`Renderer::develop`].
+//! written last: by the synthesis, or by [`Renderer::composite`].
 
 use std::rc::Rc;
 
@@ -11,7 +11,7 @@ use super::bloom::{self, BloomPass};
 use super::carry::CarryPass;
 use super::cluster::{Culler, Selection};
 use super::depth::{DepthImage, DepthResolve};
-use super::geometry::{GeometryPass, Part, Variant};
+use super::geometry::{GeometryPass, Surfaces, Variant};
 use super::layout::Layout;
 use super::lights::Lights;
 use super::lit::LitScene;
@@ -30,12 +30,13 @@ use yoro_gl::{Context, Destination, GlError, Program, RenderTarget, ShaderSource
 /// frame of the scene or in [`crate::stereo::StereoMethod::prepare`]. Nothing is compiled or allocated after that.
 pub struct Renderer {
     pub(crate) gl: Rc<Context>,
-    pub(super) settings: RenderSettings,
+    pub(crate) settings: RenderSettings,
     scene_id: u64,
     pub(super) shadow: Option<ShadowMap>,
     /// True if the style has outlines, which compare samples with their neighbours.
     pub(super) ink: bool,
-    pub(super) way: DepthResolve,
+    /// How the nearest depth of views is had.
+    pub(crate) depth_resolve: DepthResolve,
     /// The defines of `include/shade.glsl`.
     shading: Vec<(&'static str, String)>,
     pub(super) geometry: Vec<GeometryPass>,
@@ -44,7 +45,7 @@ pub struct Renderer {
     pub(super) carry: Option<CarryPass>,
     pub(super) resolve: Vec<(Resolve, Program)>,
     pub(super) bloom: Option<BloomPass>,
-    pub(super) develop: Vec<(Develop, Program)>,
+    pub(super) composite: Vec<(Composite, Program)>,
 }
 
 /// A variant of `render/resolve.frag`.
@@ -56,9 +57,9 @@ pub(super) struct Resolve {
     pub layer: bool,
 }
 
-/// A variant of `render/develop.frag`.
+/// A variant of `render/composite.frag`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Develop {
+pub(super) struct Composite {
     pub bloom: bool,
     /// Writes depth; `Some(true)` from pairs.
     pub depth: Option<bool>,
@@ -121,12 +122,12 @@ impl Renderer {
     pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Renderer, GlError> {
         settings.supported(gl.capabilities())?;
         let ink = scene.style == ShadingStyle::Anime;
-        let mut way = DepthResolve::best(gl, settings.msaa, ink);
+        let mut depth_resolve = DepthResolve::best(gl, settings.msaa, ink);
         let mut carry = None;
-        if way == DepthResolve::InColor {
+        if depth_resolve == DepthResolve::InColor {
             match CarryPass::new(gl, settings.msaa)? {
                 Some(pass) => carry = Some(pass),
-                None => way = DepthResolve::SingleSample,
+                None => depth_resolve = DepthResolve::SingleSample,
             }
         }
         let has_shadow = scene.has_sun() && settings.shadow_map_size > 0;
@@ -136,7 +137,7 @@ impl Renderer {
             scene_id: scene.id,
             shadow: has_shadow.then(|| ShadowMap::new(gl, scene, settings.shadow_map_size)).transpose()?,
             ink,
-            way,
+            depth_resolve,
             shading: shading_defines(scene, settings),
             geometry: Vec::new(),
             transparent: TransparentPass::new(gl, scene),
@@ -144,7 +145,7 @@ impl Renderer {
             carry,
             resolve: Vec::new(),
             bloom: (settings.bloom && scene.is_lit()).then(|| BloomPass::new(gl)).transpose()?,
-            develop: Vec::new(),
+            composite: Vec::new(),
         };
         renderer.prepare(scene, Layout::Single)?;
         Ok(renderer)
@@ -200,23 +201,23 @@ impl Renderer {
     /// Returns the targets, or new ones if those were made for other settings.
     fn fitting<'a>(&self, made: &'a mut ViewTargets, scene: &GpuScene) -> Result<&'a mut Targets, GlError> {
         self.check_scene(scene)?;
-        let fits = |(settings, way, _): &(RenderSettings, DepthResolve, Targets)| {
-            *settings == self.settings && *way == self.way
+        let fits = |(settings, depth_resolve, _): &(RenderSettings, DepthResolve, Targets)| {
+            *settings == self.settings && *depth_resolve == self.depth_resolve
         };
         let fitting = match made.0.take().filter(fits) {
             Some(fitting) => fitting,
-            None => (self.settings.clone(), self.way, self.targets(Layout::Single)?),
+            None => (self.settings.clone(), self.depth_resolve, self.targets(Layout::Single)?),
         };
         Ok(&mut made.0.insert(fitting).2)
     }
 
-    /// Develops the whole view in the targets.
+    /// Composites the whole view in the targets.
     fn complete<'a>(&self, targets: &'a mut Targets, view: &View) -> Result<RenderedView<'a>, GlError> {
-        if self.develops() {
+        if self.has_composite() {
             let to = Destination::whole(targets.picture(view.size)?);
-            self.develop(targets, view, Eye::Left, [0, 0], &to, None);
+            self.composite(targets, view, Eye::Left, [0, 0], &to, None);
         }
-        let color = targets.developed.as_ref().filter(|_| self.develops()).unwrap_or(targets.color());
+        let color = targets.composited.as_ref().filter(|_| self.has_composite()).unwrap_or(targets.color());
         Ok(RenderedView { color, depth: targets.depth(view.size, Eye::Left, [0, 0]) })
     }
 }
@@ -236,21 +237,11 @@ impl Renderer {
 
     /// Makes targets, to be fitted to each view that is rendered.
     pub(crate) fn targets(&self, layout: Layout) -> Result<Targets, GlError> {
-        Targets::new(&self.gl, layout, &self.settings, self.way)
-    }
-
-    /// Returns how the nearest depth of views is had.
-    pub fn nearest_depth(&self) -> DepthResolve {
-        self.way
-    }
-
-    /// Returns the number of samples in each pixel.
-    pub(crate) fn samples(&self) -> u32 {
-        self.settings.msaa
+        Targets::new(&self.gl, layout, &self.settings, self.depth_resolve)
     }
 
     /// True if bloom is added to the average of the samples.
-    pub(crate) fn develops(&self) -> bool {
+    pub(crate) fn has_composite(&self) -> bool {
         self.bloom.is_some()
     }
 
@@ -265,44 +256,45 @@ impl Renderer {
         let samples = if layer { 1 } else { self.settings.msaa };
         let plain = Variant { layout, ..Variant::plain(samples) };
         self.prepare_variant(scene, plain)?;
-        if self.way == DepthResolve::InColor && !layer {
+        if self.depth_resolve == DepthResolve::InColor && !layer {
             self.prepare_variant(scene, Variant { carried: true, ..plain })?;
         }
-        let samples = if self.way == DepthResolve::Samples && !layer { self.settings.msaa } else { 1 };
-        if self.ink || self.way == DepthResolve::Samples {
+        let samples =
+            if self.depth_resolve == DepthResolve::Samples && !layer { self.settings.msaa } else { 1 };
+        if self.ink || self.depth_resolve == DepthResolve::Samples {
             self.prepare_resolve(Resolve { samples, ink: self.ink, depth: samples > 1, layer })?;
         }
         if self.bloom.is_some() || layer {
-            self.prepare_develop(Develop { bloom: self.bloom.is_some(), layer, ..Develop::default() })?;
+            self.prepare_composite(Composite { bloom: self.bloom.is_some(), layer, ..Composite::default() })?;
         }
         Ok(())
     }
 
-    /// Compiles the programs that draw over a developed eye, with one sample in each pixel, too, and those that develop
+    /// Compiles the programs that draw over a composited eye, with one sample in each pixel, too, and those that composite
     /// it with its depth.
     pub(crate) fn prepare_over(&mut self, scene: &GpuScene) -> Result<(), GlError> {
         self.prepare_variant(scene, Variant::plain(1))?;
-        let depth = Some(self.way == DepthResolve::InColor);
-        let plain = Develop { bloom: self.bloom.is_some(), ..Develop::default() };
-        self.prepare_develop(plain)?;
-        self.prepare_develop(Develop { depth, ..plain })
+        let depth = Some(self.depth_resolve == DepthResolve::InColor);
+        let plain = Composite { bloom: self.bloom.is_some(), ..Composite::default() };
+        self.prepare_composite(plain)?;
+        self.prepare_composite(Composite { depth, ..plain })
     }
 
     /// Compiles the program that loads an image and its depth without bloom, and the resolve of a view without
     /// outlines.
     pub(crate) fn prepare_load(&mut self) -> Result<(), GlError> {
         self.prepare_raw()?;
-        let carried = self.way == DepthResolve::InColor;
+        let carried = self.depth_resolve == DepthResolve::InColor;
         for carries in [false, true].into_iter().take(1 + usize::from(carried)) {
             let carries = if carries { self.settings.msaa } else { 0 };
-            self.prepare_develop(Develop { depth: Some(carried), carries, ..Develop::default() })?;
+            self.prepare_composite(Composite { depth: Some(carried), carries, ..Composite::default() })?;
         }
         Ok(())
     }
 
     /// Compiles the resolve of a view without outlines.
     pub(crate) fn prepare_raw(&mut self) -> Result<(), GlError> {
-        if self.way == DepthResolve::Samples {
+        if self.depth_resolve == DepthResolve::Samples {
             let samples = self.settings.msaa;
             self.prepare_resolve(Resolve { samples, ink: false, depth: true, layer: false })?;
         }
@@ -312,21 +304,21 @@ impl Renderer {
     /// Compiles the programs that take the dominant eye's colours.
     pub(crate) fn prepare_reprojected(&mut self, scene: &GpuScene) -> Result<(), GlError> {
         let plain = Variant::plain(self.settings.msaa);
-        if self.way == DepthResolve::InColor {
+        if self.depth_resolve == DepthResolve::InColor {
             self.prepare_variant(scene, Variant { reprojected: true, carried: true, ..plain })?;
         }
         self.prepare_variant(scene, Variant { reprojected: true, ..plain })
     }
 
     fn prepare_variant(&mut self, scene: &GpuScene, variant: Variant) -> Result<(), GlError> {
-        if self.geometry.iter().any(|pass| pass.variant() == variant) {
+        if self.geometry.iter().any(|pass| pass.variant == variant) {
             return Ok(());
         }
         let gl = &self.gl;
         let mut shading = self.shading.clone();
         shading.extend((variant.samples > 1).then(|| ("MULTISAMPLE", String::new())));
         shading.extend(self.ink.then(|| ("INK", String::new())));
-        if variant.reprojected && self.way == DepthResolve::InColor {
+        if variant.reprojected && self.depth_resolve == DepthResolve::InColor {
             shading.push(("DEPTH_PAIRS", String::new()));
         }
         self.geometry.push(GeometryPass::new(gl, scene, variant, &shading)?);
@@ -351,8 +343,8 @@ impl Renderer {
         Ok(())
     }
 
-    fn prepare_develop(&mut self, variant: Develop) -> Result<(), GlError> {
-        if self.develop.iter().all(|(made, _)| *made != variant) {
+    fn prepare_composite(&mut self, variant: Composite) -> Result<(), GlError> {
+        if self.composite.iter().all(|(made, _)| *made != variant) {
             let flags = [
                 ("BLOOM", variant.bloom),
                 ("WRITE_DEPTH", variant.depth.is_some()),
@@ -362,8 +354,8 @@ impl Renderer {
             let on = flags.into_iter().filter(|(_, on)| *on);
             let mut defines: Vec<_> = on.map(|(name, _)| (name, String::new())).collect();
             defines.extend((variant.carries > 0).then(|| ("CARRIED", variant.carries.to_string())));
-            let program = Program::new(&self.gl, ShaderSource::Screen("render/develop.frag"), &defines)?;
-            self.develop.push((variant, program));
+            let program = Program::new(&self.gl, ShaderSource::Screen("render/composite.frag"), &defines)?;
+            self.composite.push((variant, program));
         }
         Ok(())
     }
@@ -387,9 +379,9 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
         let culler = Culler::selecting(view, selection);
-        self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler));
         self.resolve(targets, view, true, self.ink, None)?;
-        self.shine(targets, view, Eye::Left);
+        self.render_bloom(targets, view, Eye::Left);
         Ok(())
     }
 
@@ -404,24 +396,24 @@ impl Renderer {
         to: Option<&EyeTarget>,
     ) -> Result<bool, GlError> {
         let view = &views[0];
-        let to = to.filter(|_| !self.develops() && !self.ink);
+        let to = to.filter(|_| !self.has_composite() && !self.ink);
         let direct = targets.fit(view, scene.detail(view), self.needs(depth), to)?;
         let culler = Culler::of_view(view);
-        let part = match views.len() {
-            1 => Part::Selected(&culler),
-            _ => Part::Slice([view.depth.near, view.depth.far]),
+        let surfaces = match views.len() {
+            1 => Surfaces::Selected(&culler),
+            _ => Surfaces::Slice([view.depth.near, view.depth.far]),
         };
-        self.draw_on_sky(targets, scene, views, &part);
+        self.draw_on_sky(targets, scene, views, &surfaces);
         self.draw_transparent(targets, scene, views);
         self.resolve(targets, view, depth, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
         if views.len() == 1 && !direct {
-            self.shine(targets, view, Eye::Left);
+            self.render_bloom(targets, view, Eye::Left);
         }
         Ok(direct)
     }
 
     /// Returns what a view needs whose depth is read or not.
     pub(super) fn needs(&self, depth: bool) -> Needs {
-        Needs { depth, samples: self.way == DepthResolve::Samples && (depth || self.ink) }
+        Needs { depth, samples: self.depth_resolve == DepthResolve::Samples && (depth || self.ink) }
     }
 }

@@ -41,26 +41,29 @@ pub enum Onto {
 /// 4 of a complete picture where somebody reads it as a texture.
 pub struct Targets {
     gl: Rc<Context>,
-    layout: Layout,
-    samples: u32,
-    way: DepthResolve,
+    /// Which views the targets hold.
+    pub layout: Layout,
+    /// The number of samples in each pixel of what is drawn.
+    pub samples: u32,
+    depth_resolve: DepthResolve,
     /// Samples outside tiles, and whether they carry depth.
     multisample: Option<(MultisampleTarget, bool)>,
     /// Samples in tiles; `None` if the driver cannot keep them there.
-    tile: Option<TileTarget>,
-    onto: Onto,
+    pub tile: Option<TileTarget>,
+    /// The framebuffer of the current view.
+    pub onto: Onto,
     /// True if the current view carries depth in a second colour.
-    carries: bool,
+    pub carries: bool,
     needs: Needs,
-    /// Average colour and, depending on the way, nearest depth.
+    /// Average colour and, depending on the depth_resolve, nearest depth.
     pub resolved: RenderTarget,
     /// The depth of two samples, made when first needed.
-    pair: Option<RenderTarget>,
+    pub pair: Option<RenderTarget>,
     /// The picture with outlines, where they are drawn beside the resolved one.
     pub inked: Option<RenderTarget>,
     pub bloom: Option<BloomTargets>,
     /// The complete picture of a view, made when first needed.
-    pub developed: Option<RenderTarget>,
+    pub composited: Option<RenderTarget>,
     /// The [detail](super::lit::LitScene::detail) of the view in the targets.
     pub detail: f32,
     /// The depth convention of the view in the targets.
@@ -75,7 +78,7 @@ impl Targets {
         gl: &Rc<Context>,
         layout: Layout,
         settings: &RenderSettings,
-        way: DepthResolve,
+        depth_resolve: DepthResolve,
     ) -> Result<Targets, GlError> {
         let samples = if layout == Layout::Layered { 1 } else { settings.msaa };
         let size = layout.texture_size([1, 1]);
@@ -88,7 +91,7 @@ impl Targets {
             gl: gl.clone(),
             layout,
             samples,
-            way: if samples == 1 { DepthResolve::None } else { way },
+            depth_resolve: if samples == 1 { DepthResolve::None } else { depth_resolve },
             multisample: None,
             tile: tile.transpose()?,
             onto: Onto::Resolved,
@@ -98,7 +101,7 @@ impl Targets {
             pair: None,
             inked: None,
             bloom: settings.bloom.then(|| BloomTargets::new(gl)).transpose()?,
-            developed: None,
+            composited: None,
             detail: 1.0,
             convention: DepthConvention::Reversed,
             has_depth: false,
@@ -126,7 +129,7 @@ impl Targets {
             return Ok(false);
         }
         let is_reversed = view.depth.convention == DepthConvention::Reversed;
-        let carries = needs.depth && self.way == DepthResolve::InColor && is_reversed;
+        let carries = needs.depth && self.depth_resolve == DepthResolve::InColor && is_reversed;
         self.carries = carries;
         if carries {
             if self.pair.is_none() {
@@ -140,11 +143,11 @@ impl Targets {
             return Ok(to.is_some_and(|to| to.texture.is_some()) && !carries);
         }
         self.onto = Onto::Samples;
-        let readable = self.way == DepthResolve::Samples;
+        let readable = self.depth_resolve == DepthResolve::Samples;
         match &mut self.multisample {
             Some((samples, carried)) if *carried == carries => samples.resize(whole)?,
             slot => {
-                // The former samples are deleted first.
+                // The previous samples are deleted first.
                 *slot = None;
                 let colors = &[Format::Rgba8, Format::Rg16F][..1 + usize::from(carries)];
                 let samples =
@@ -178,7 +181,7 @@ impl Targets {
 
     /// Makes room for the complete picture of a view, and returns it.
     pub fn picture(&mut self, size: [u32; 2]) -> Result<&RenderTarget, GlError> {
-        picture(&self.gl, &mut self.developed, size)
+        picture(&self.gl, &mut self.composited, size)
     }
 
     /// Makes room for a picture with outlines beside the resolved one, and returns it.
@@ -201,39 +204,9 @@ impl Targets {
         }
     }
 
-    /// Returns which views the targets hold.
-    pub fn layout(&self) -> Layout {
-        self.layout
-    }
-
-    /// Returns the framebuffer of the current view.
-    pub fn onto(&self) -> Onto {
-        self.onto
-    }
-
-    /// True if the current view carries depth in a second colour.
-    pub fn carries(&self) -> bool {
-        self.carries
-    }
-
     /// Returns the samples outside tiles.
     pub fn multisample(&self) -> Option<&MultisampleTarget> {
         self.multisample.as_ref().map(|(samples, _)| samples)
-    }
-
-    /// Returns the samples in tiles.
-    pub fn tile(&self) -> Option<&TileTarget> {
-        self.tile.as_ref()
-    }
-
-    /// Returns the target of the depth of two samples.
-    pub fn pair(&self) -> Option<&RenderTarget> {
-        self.pair.as_ref()
-    }
-
-    /// Returns the number of samples in each pixel of what is drawn.
-    pub fn sample_count(&self) -> u32 {
-        self.samples
     }
 
     /// Returns the lower left part, of this size, of the image that is drawn into.

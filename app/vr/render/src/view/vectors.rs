@@ -15,7 +15,7 @@ use yoro_gl::{
 };
 
 /// Writes motion vectors and depth of a view, whose size need not be that of the rendered image: normalized device
-/// coordinates minus those of the former frame.
+/// coordinates minus those of the previous frame.
 ///
 /// Sky and still surfaces have those of depth and poses. Moving surfaces are drawn, from the vertices that they have and
 /// those that they had before the scene's time last changed.
@@ -28,6 +28,13 @@ pub(crate) struct VectorPass {
     target: RenderTarget,
     /// True if the target shows any.
     moves: bool,
+}
+
+/// A depth image, and the view that it shows.
+#[derive(Clone, Copy)]
+pub(crate) struct RenderedDepth<'a> {
+    pub depth: &'a DepthImage<'a>,
+    pub view: &'a View,
 }
 
 /// What moves between two frames: the view whose pixels get vectors, and the view of each frame in whose normalized device
@@ -104,17 +111,17 @@ impl VectorPass {
 
     /// Writes vectors (RGBA16F, alpha 1 on moving surfaces) and window depth of a part of the view whose moving surfaces
     /// were drawn last. The destination has the part's size; `corner` is the part's lower left pixel. `rendered` is the
-    /// view that the depth image shows, from the same place in the same direction.
+    /// depth of a view from the same place in the same direction.
     pub fn write(
         &mut self,
-        (depth, rendered): (&DepthImage, &View),
+        RenderedDepth { depth, view: rendered }: RenderedDepth,
         step: &Step,
         corner: [u32; 2],
         to: &Destination,
     ) -> Result<(), GlError> {
         let program = self.vectors.bind(depth)?;
         program.texture("moving_map", 1, self.target.color(0).raw()).set("moves", self.moves);
-        set_places(program, (depth, rendered), step);
+        set_places(program, depth, rendered, step);
         let signed = |at: [u32; 2]| IVec2::from(at.map(|n| n as i32));
         program
             .set("offset", signed(corner) - signed(to.origin))
@@ -133,8 +140,8 @@ impl VectorPass {
     }
 }
 
-/// Sets where a pixel's depth and former place are.
-fn set_places(program: &Program, (depth, rendered): (&DepthImage, &View), step: &Step) {
+/// Sets where a pixel's depth and previous place are.
+fn set_places(program: &Program, depth: &DepthImage, rendered: &View, step: &Step) {
     let Step { view, now, then, .. } = step;
     let pair = |[x, y]: [u32; 2]| Vec2::new(x as f32, y as f32);
     let corner = |view: &View| Vec2::new(view.frustum.left, view.frustum.bottom);
@@ -155,7 +162,7 @@ fn set_places(program: &Program, (depth, rendered): (&DepthImage, &View), step: 
         .set("to_previous", to_previous(now, then));
 }
 
-/// Returns the matrix from normalized device coordinates x and y, 1, and inverse distance to the former frame's clip space.
+/// Returns the matrix from normalized device coordinates x and y, 1, and inverse distance to the previous frame's clip space.
 fn to_previous(now: &View, then: &View) -> Mat4 {
     let f = &now.frustum;
     // The ray through a place in the image, at distance 1.
@@ -165,7 +172,7 @@ fn to_previous(now: &View, then: &View) -> Mat4 {
         Vec4::new((f.left + f.right) / 2.0, (f.bottom + f.top) / 2.0, -1.0, 0.0),
         Vec4::ZERO,
     );
-    let mut from_former_eye = Mat4::from_quat(now.pose.orientation) * rays;
-    from_former_eye.w_axis = (now.pose.position - then.pose.position).extend(1.0);
-    eye_to_clip(then) * from_former_eye
+    let mut from_previous_eye = Mat4::from_quat(now.pose.orientation) * rays;
+    from_previous_eye.w_axis = (now.pose.position - then.pose.position).extend(1.0);
+    eye_to_clip(then) * from_previous_eye
 }

@@ -56,7 +56,7 @@ fn vectors_are_those_of_what_has_moved() {
             let mut pass = VectorPass::new(gl, false).unwrap();
             let step = Step { view: now, now: eye, then, ndc };
             pass.draw_moving(&rig.scene, &step).unwrap();
-            pass.write((&image, &rendered), &step, [0, 0], &to).unwrap();
+            pass.write(RenderedDepth { depth: &image, view: &rendered }, &step, [0, 0], &to).unwrap();
             let got = target.read_rgba32f(0, to.origin, now.size);
             check(gl, &target, &to, &step, (&got, before, seconds));
             assert_eq!(gl.take_errors(), None);
@@ -83,7 +83,8 @@ fn a_jump_is_no_motion() {
         let image = targets.depth(view.size, Eye::Left, [0, 0]);
         let step = Step { view, now: view, then: view, ndc: Ndc::ZeroToOne };
         pass.draw_moving(&rig.scene, &step).unwrap();
-        pass.write((&image, &view), &step, [0, 0], &Destination::whole(&target)).unwrap();
+        pass.write(RenderedDepth { depth: &image, view: &view }, &step, [0, 0], &Destination::whole(&target))
+            .unwrap();
         let vectors = target.read_rgba32f(0, [0, 0], view.size);
         vectors.iter().map(|v| v[0].abs().max(v[1].abs())).fold(0.0, f32::max)
     };
@@ -119,7 +120,7 @@ fn check(
     let (to_world, to_eye, then) = (to_clip(now).inverse(), to_clip(eye), to_clip(then));
     let step = seconds - before;
     // Where a surface that is seen was: still, the cube, the fence.
-    let former = |world: DVec3, i: usize| match i {
+    let previous = |world: DVec3, i: usize| match i {
         0 => world,
         1 => world - CUBE_VELOCITY.as_dvec3() * step,
         _ => DQuat::from_rotation_y(-FENCE_TURN * step) * world,
@@ -132,7 +133,7 @@ fn check(
         let Some(world) = project(to_world, here) else { continue };
         let moves = got[i][3] == 1.0;
         let off = |k: usize| {
-            let was = project(then, former(world, k)).unwrap();
+            let was = project(then, previous(world, k)).unwrap();
             let mut want = project(to_eye, world).unwrap() - was;
             if *ndc == Ndc::MinusOneToOne {
                 want.z *= 2.0;

@@ -14,25 +14,6 @@ const PERIOD_NS: i64 = 1_000_000_000;
 /// The number of frames of the fastest display in a period, including a line that is late.
 const FRAMES: usize = 512;
 
-/// The viewer's own part of a line.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ViewerState {
-    /// Stereo method.
-    pub method: String,
-    /// Synthesis pipeline, for methods with synthesis.
-    pub pipeline: Option<String>,
-    /// Scene.
-    pub scene: String,
-    /// Render scale per axis.
-    pub render_scale: f32,
-    /// Divisor of the ImBuffer's resolution, for pipelines that have an ImBuffer.
-    pub imbuffer: Option<u32>,
-    /// The name of this run in the settings.
-    pub run: Option<String>,
-    /// [`Line::auto`].
-    pub auto: Option<String>,
-}
-
 /// Sum of one stage's GPU times.
 #[derive(Clone, Copy, Debug)]
 struct Stage {
@@ -110,8 +91,8 @@ impl Telemetry {
         self.begin_ns.map_or(0.0, |begin| (now_ns - begin) as f64 * 1e-9)
     }
 
-    /// Ends a period and returns its line.
-    pub fn line(&mut self, now_ns: i64, viewer: &ViewerState, device: &DeviceState) -> Line {
+    /// Ends a period and returns its line. `viewer` has what the viewer knows: method, pipeline, scene, sizes, run, choice.
+    pub fn line(&mut self, now_ns: i64, viewer: Line, device: &DeviceState) -> Line {
         let frames = self.second.take();
         let process = ProcessSample::take();
         let since_sample = self.process_ns.map_or(0.0, |then| (now_ns - then) as f64 * 1e-9);
@@ -128,9 +109,6 @@ impl Telemetry {
         let optional = |value: Option<f32>| value.filter(|v| v.is_finite()).map(f64::from);
         Line {
             time_s: self.seconds(now_ns),
-            method: viewer.method.clone(),
-            pipeline: viewer.pipeline.clone(),
-            scene: viewer.scene.clone(),
             fps: frames.map(|f| f.fps),
             refresh_hz: Some(self.refresh_hz as f64).filter(|hz| *hz > 0.0),
             stale: frames.map(|f| f.stale),
@@ -150,13 +128,10 @@ impl Telemetry {
             skin_celsius: optional(device.skin_celsius),
             thermal_status: device.thermal_status,
             thermal_headroom: optional(device.thermal_headroom),
-            render_scale: viewer.render_scale as f64,
-            imbuffer: viewer.imbuffer,
             frames: frames.map(|f| f.frames),
             status: device.status,
-            run: viewer.run.clone(),
             performance: device.performance.map(str::to_owned),
-            auto: viewer.auto.clone(),
+            ..viewer
         }
     }
 
@@ -173,13 +148,8 @@ mod tests {
 
     const FRAME: i64 = 16_666_667;
 
-    fn viewer() -> ViewerState {
-        ViewerState {
-            method: "yoro".into(),
-            scene: "prototype".into(),
-            render_scale: 1.0,
-            ..Default::default()
-        }
+    fn viewer() -> Line {
+        Line { method: "yoro".into(), scene: "prototype".into(), render_scale: 1.0, ..Default::default() }
     }
 
     fn run(telemetry: &mut Telemetry, device: &DeviceState, seconds: usize) -> Vec<Line> {
@@ -187,7 +157,7 @@ mod tests {
         while lines.len() < seconds {
             telemetry.frame(now, 60.0);
             if telemetry.is_due(now) {
-                lines.push(telemetry.line(now, &viewer(), device));
+                lines.push(telemetry.line(now, viewer(), device));
             }
             now += FRAME;
         }
@@ -270,7 +240,7 @@ mod tests {
             let pass = |name, ms| (name, Duration::from_millis(ms));
             telemetry.gpu([pass("surfaces", ms), pass("resolve", 1), pass("resolve", 1)], 1);
         }
-        let line = telemetry.line(0, &viewer(), &DeviceState::default());
+        let line = telemetry.line(0, viewer(), &DeviceState::default());
         let times: Vec<_> = line.stages.iter().map(|s| (s.name.as_str(), s.milliseconds)).collect();
         assert_eq!(times, [("surfaces", 3.0), ("resolve", 2.0)]);
         assert_eq!(line.gpu_ms, Some(5.0));

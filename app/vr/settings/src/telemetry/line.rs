@@ -121,104 +121,85 @@ fn short(name: &str) -> &str {
     name.char_indices().nth(MAX_CHARACTERS).map_or(name, |(end, _)| &name[..end])
 }
 
-/// A number that may be missing.
-macro_rules! number {
-    ($name:expr, $kind:ident, $field:ident, $decimals:literal, $unit:literal) => {
-        LineKey {
-            name: $name,
-            decimals: $decimals,
-            unit: $unit,
-            get: |line| line.$field.map_or(Value::Missing, |value| Value::$kind(value as _)),
-            set: |line, text| number(text).map(|value| line.$field = value).is_some(),
-        }
+/// A key with its value: a number that may be missing or is in every line, or a name of either kind.
+macro_rules! key {
+    ($name:expr, $decimals:literal, $unit:literal, $get:expr, $set:expr) => {
+        LineKey { name: $name, decimals: $decimals, unit: $unit, get: $get, set: $set }
     };
-}
-
-/// A number that is in every line.
-macro_rules! always {
-    ($name:literal, $field:ident, $decimals:literal, $unit:literal) => {
-        LineKey {
-            name: $name,
-            decimals: $decimals,
-            unit: $unit,
-            get: |line| Value::Real(line.$field),
-            set: |line, text| number(text).flatten().map(|value| line.$field = value).is_some(),
-        }
+    (number $name:expr, $kind:ident, $field:ident, $decimals:literal, $unit:literal) => {
+        key!(
+            $name,
+            $decimals,
+            $unit,
+            |line| line.$field.map_or(Value::Missing, |value| Value::$kind(value as _)),
+            |line, text| number(text).map(|value| line.$field = value).is_some()
+        )
     };
-}
-
-/// A name that is in every line.
-macro_rules! name {
-    ($name:literal, $field:ident) => {
-        LineKey {
-            name: $name,
-            decimals: 0,
-            unit: "",
-            get: |line| Value::Text(&line.$field),
-            set: |line, text| {
-                line.$field = text.unwrap_or(MISSING).into();
-                true
-            },
-        }
+    (always $name:literal, $field:ident, $decimals:literal, $unit:literal) => {
+        key!($name, $decimals, $unit, |line| Value::Real(line.$field), |line, text| {
+            number(text).flatten().map(|value| line.$field = value).is_some()
+        })
     };
-}
-
-/// A name that may be missing.
-macro_rules! optional_name {
-    ($name:literal, $field:ident) => {
-        LineKey {
-            name: $name,
-            decimals: 0,
-            unit: "",
-            get: |line| line.$field.as_deref().map_or(Value::Missing, |name| Value::Text(short(name))),
-            set: |line, text| {
+    (name $name:literal, $field:ident) => {
+        key!($name, 0, "", |line| Value::Text(&line.$field), |line, text| {
+            line.$field = text.unwrap_or(MISSING).into();
+            true
+        })
+    };
+    (optional $name:literal, $field:ident) => {
+        key!(
+            $name,
+            0,
+            "",
+            |line| line.$field.as_deref().map_or(Value::Missing, |name| Value::Text(short(name))),
+            |line, text| {
                 line.$field = text.map(str::to_owned);
                 true
-            },
-        }
+            }
+        )
     };
 }
 
 /// The line's keys in order, except for the version, which comes first.
 pub const LINE_KEYS: &[LineKey] = &[
-    always!("t", time_s, 1, "s"),
-    name!("method", method),
-    optional_name!("pipeline", pipeline),
-    name!("scene", scene),
-    number!("FPS", Real, fps, 1, ""),
-    number!(REFRESH, Real, refresh_hz, 0, ""),
-    number!("Stale", Integer, stale, 0, ""),
-    number!("frame", Real, frame_ms, 2, "ms"),
-    number!("p99", Real, p99_ms, 2, "ms"),
-    number!(GPU, Real, gpu_ms, 2, "ms"),
-    number!("CPU", Real, cpu_percent, 1, "%"),
-    number!("RSS", Real, rss_mb, 1, "MB"),
-    number!("mA_raw", Integer, current_raw, 0, ""),
-    number!("mA", Real, current_ma, 1, ""),
-    number!("mV", Integer, voltage_mv, 0, ""),
-    number!("level", Integer, level_percent, 0, "%"),
-    number!("uAh", Integer, charge_uah, 0, ""),
-    number!("plug", Integer, plugged, 0, ""),
-    number!("Tbat", Real, battery_celsius, 1, "C"),
-    number!("Tskin", Real, skin_celsius, 1, "C"),
-    number!("thermal", Integer, thermal_status, 0, ""),
-    number!("headroom", Real, thermal_headroom, 2, ""),
-    always!("scale", render_scale, 2, ""),
-    number!("imbuffer", Integer, imbuffer, 0, ""),
-    number!("frames", Integer, frames, 0, ""),
-    LineKey {
-        name: "status",
-        decimals: 0,
-        unit: "",
-        get: |line| line.status.map_or(Value::Missing, |status| Value::Text(status.name())),
-        set: |line, text| {
+    key!(always "t", time_s, 1, "s"),
+    key!(name "method", method),
+    key!(optional "pipeline", pipeline),
+    key!(name "scene", scene),
+    key!(number "FPS", Real, fps, 1, ""),
+    key!(number REFRESH, Real, refresh_hz, 0, ""),
+    key!(number "Stale", Integer, stale, 0, ""),
+    key!(number "frame", Real, frame_ms, 2, "ms"),
+    key!(number "p99", Real, p99_ms, 2, "ms"),
+    key!(number GPU, Real, gpu_ms, 2, "ms"),
+    key!(number "CPU", Real, cpu_percent, 1, "%"),
+    key!(number "RSS", Real, rss_mb, 1, "MB"),
+    key!(number "mA_raw", Integer, current_raw, 0, ""),
+    key!(number "mA", Real, current_ma, 1, ""),
+    key!(number "mV", Integer, voltage_mv, 0, ""),
+    key!(number "level", Integer, level_percent, 0, "%"),
+    key!(number "uAh", Integer, charge_uah, 0, ""),
+    key!(number "plug", Integer, plugged, 0, ""),
+    key!(number "Tbat", Real, battery_celsius, 1, "C"),
+    key!(number "Tskin", Real, skin_celsius, 1, "C"),
+    key!(number "thermal", Integer, thermal_status, 0, ""),
+    key!(number "headroom", Real, thermal_headroom, 2, ""),
+    key!(always "scale", render_scale, 2, ""),
+    key!(number "imbuffer", Integer, imbuffer, 0, ""),
+    key!(number "frames", Integer, frames, 0, ""),
+    key!(
+        "status",
+        0,
+        "",
+        |line| line.status.map_or(Value::Missing, |status| Value::Text(status.name())),
+        |line, text| {
             line.status = text.and_then(BatteryStatus::from_name);
             line.status.is_some() == text.is_some()
-        },
-    },
-    optional_name!("run", run),
-    optional_name!("perf", performance),
-    optional_name!("auto", auto),
+        }
+    ),
+    key!(optional "run", run),
+    key!(optional "perf", performance),
+    key!(optional "auto", auto),
 ];
 
 impl LineKey {

@@ -15,7 +15,7 @@ pub mod stats;
 mod summary;
 mod text;
 
-pub use collect::{Telemetry, ViewerState};
+pub use collect::Telemetry;
 pub use device::DeviceState;
 pub use frames::{FrameStatistics, SecondStatistics};
 pub use line::{LINE_KEYS, Line, LineKey, StageTime};

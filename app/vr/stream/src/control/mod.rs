@@ -177,9 +177,9 @@ impl RateControl {
         if self.round_trip.is_none() {
             return (false, false);
         }
-        let slack = (SLACK + NOISE * self.trend.noise() * 1e-3).min(MAX_SLACK);
+        let slack = (SLACK + NOISE * self.trend.noise * 1e-3).min(MAX_SLACK);
         let expected = self.expected(self.needs_intra);
-        let rate = self.rate.bytes_per_second();
+        let rate = self.rate.bytes_per_second;
         // A frame that takes longer than its interval waits for itself long enough.
         let slack = (slack - (expected / rate - self.interval).max(0.0)).max(0.0);
         let is_wanted = self.debt_at(now) <= rate * self.requested / 2.0;
@@ -190,7 +190,7 @@ impl RateControl {
     pub fn quantizer(&mut self, is_intra: bool) -> u8 {
         let coarsest = f64::from(MAX_QUANTIZER.max(self.min_quantizer));
         let Some(size) = self.size(is_intra) else { return coarsest as u8 };
-        let rate = FILL * self.rate.bytes_per_second();
+        let rate = FILL * self.rate.bytes_per_second;
         let room = rate * if is_intra { INTRA_TIME.max(self.requested) } else { self.requested };
         let wanted = (6.0 * (size / room).log2()).clamp(f64::from(self.min_quantizer), coarsest);
         if is_intra {
@@ -302,7 +302,7 @@ impl RateControl {
             (self.fastest, self.window_start) = ([[f64::INFINITY, 0.0], self.fastest[0]], now);
         }
         if round_trip < self.fastest[0][0] {
-            self.fastest[0] = [round_trip, self.expected(false) / self.rate.bytes_per_second()];
+            self.fastest[0] = [round_trip, self.expected(false) / self.rate.bytes_per_second];
         }
         let is_full = std::mem::take(&mut self.is_full);
         self.full = if is_full { self.full + 1 } else { 0 };
@@ -313,7 +313,7 @@ impl RateControl {
             Queue::Steady if self.trend.is_late() => Queue::Shrinks,
             queue => queue,
         };
-        self.rate.follow(queue, (self.trend.is_stalled(), is_full), round_trip, now);
+        self.rate.follow(queue, self.trend.is_stalled(), is_full, round_trip, now);
     }
 
     /// Records that the client misses a frame, without which it cannot decode any before the next intra frame.
@@ -367,13 +367,13 @@ impl RateControl {
     fn fastest(&self) -> f64 {
         let [a, b] = self.fastest;
         let [round_trip, own] = if a[0] <= b[0] { a } else { b };
-        round_trip + (self.expected(false) / self.rate.bytes_per_second() - own).max(0.0)
+        round_trip + (self.expected(false) / self.rate.bytes_per_second - own).max(0.0)
     }
 
     /// Returns the bytes that have been sent beyond the rate.
     fn debt_at(&self, now: f64) -> f64 {
         let (debt, since) = self.debt;
-        (debt - (now - since) * self.rate.bytes_per_second()).max(0.0)
+        (debt - (now - since) * self.rate.bytes_per_second).max(0.0)
     }
 
     /// Returns the bytes that a frame would have at quantizer 0; `None` if none is known.

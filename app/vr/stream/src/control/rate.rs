@@ -7,9 +7,9 @@ use std::collections::VecDeque;
 use super::trend::Queue;
 
 /// The least rate in bytes/s.
-const LEAST: f64 = 12.5e3;
+const MIN_RATE: f64 = 12.5e3;
 /// The most.
-const MOST: f64 = 1e9;
+const MAX_RATE: f64 = 1e9;
 /// The rate before anything has arrived, in bytes/s.
 const FIRST: f64 = 125e3;
 /// The factor by which the rate grows in a second: at the start, and later while the link's capacity is not known.
@@ -38,7 +38,7 @@ const FASTER: f64 = 6.0;
 /// The rate at which bytes may be sent.
 #[derive(Clone, Debug)]
 pub struct Rate {
-    bytes_per_second: f64,
+    pub bytes_per_second: f64,
     /// Sending, arrival (in s, each by the clock of its side) and bytes of the newest frames that have arrived.
     arrivals: VecDeque<[f64; 3]>,
     /// Mean and relative variance of what arrived when queues grew.
@@ -66,11 +66,6 @@ impl Default for Rate {
 }
 
 impl Rate {
-    /// Returns the rate in bytes/s.
-    pub fn bytes_per_second(&self) -> f64 {
-        self.bytes_per_second
-    }
-
     /// Notes a frame that has arrived: its times in s, and its bytes.
     pub fn arrived(&mut self, sent: f64, arrived: f64, bytes: f64) {
         // A frame that was overtaken counts when it is noted.
@@ -104,14 +99,14 @@ impl Rate {
     pub fn begin(&mut self, bytes: f64, round_trip: f64) -> bool {
         let is_lost = std::mem::take(&mut self.is_lost);
         if is_lost {
-            self.bytes_per_second = (bytes / round_trip.max(1e-3)).max(LEAST);
+            self.bytes_per_second = (bytes / round_trip.max(1e-3)).max(MIN_RATE);
         }
         is_lost
     }
 
     /// Follows the queue at a time in s, with the present round trip in s. `is_full` is true if more would have been sent,
     /// but for what is on its way.
-    pub fn follow(&mut self, queue: Queue, (is_stalled, is_full): (bool, bool), round_trip: f64, now: f64) {
+    pub fn follow(&mut self, queue: Queue, is_stalled: bool, is_full: bool, round_trip: f64, now: f64) {
         let passed = (now - self.changed).clamp(0.0, 0.2);
         self.changed = now;
         // The trend is seen after some frames, but so much slower a link after one.
@@ -145,7 +140,7 @@ impl Rate {
         });
         // Less was sent than the rate, so what arrives may be all that was sent.
         let share = if self.bytes_per_second > UNUSED * arriving { 1.0 } else { DECREASE };
-        self.bytes_per_second = self.bytes_per_second.min(share * arriving).max(LEAST);
+        self.bytes_per_second = self.bytes_per_second.min(share * arriving).max(MIN_RATE);
     }
 
     fn increase(&mut self, passed: f64, is_full: bool, now: f64, round_trip: f64) {
@@ -169,14 +164,14 @@ impl Rate {
             }
             None => self.bytes_per_second * if self.is_starting { START } else { GROWTH }.powf(passed),
         };
-        self.bytes_per_second = grown.min(most).min(MOST);
+        self.bytes_per_second = grown.min(most).min(MAX_RATE);
     }
 
     /// Takes a half of what has arrived lately, or of the rate if that is less: nothing has for some time in s.
     pub fn give_up(&mut self, silence: f64, now: f64) {
         let bytes: f64 = self.arrivals.iter().map(|arrival| arrival[2]).sum();
         let arriving = bytes / (WINDOW + silence);
-        self.bytes_per_second = (0.5 * self.bytes_per_second.min(arriving)).max(LEAST);
+        self.bytes_per_second = (0.5 * self.bytes_per_second.min(arriving)).max(MIN_RATE);
         (self.is_starting, self.is_lost, self.capacity) = (true, true, None);
         (self.changed, self.decreased) = (now, now);
         self.arrivals.clear();

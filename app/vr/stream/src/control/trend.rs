@@ -12,9 +12,9 @@ use std::collections::VecDeque;
 /// The share of the previous value in the smoothed delay.
 const SMOOTHING: f64 = 0.7;
 /// The most frames that the line is fitted to, the fewest, and the longest time that they span in ms.
-const MOST: usize = 20;
-const FEWEST: usize = 6;
-const LONGEST: f64 = 600.0;
+const MAX_POINTS: usize = 20;
+const MIN_POINTS: usize = 6;
+const MAX_SPAN: f64 = 600.0;
 /// What the slope is multiplied with before it is compared, for each of up to [`MAX_FRAMES`] frames.
 const GAIN: f64 = 4.0;
 const MAX_FRAMES: f64 = 60.0;
@@ -74,7 +74,7 @@ pub struct Trend {
     /// the present one's begin.
     delays: VecDeque<[f64; 2]>,
     /// The mean difference between the delays of two frames in ms.
-    noise: f64,
+    pub noise: f64,
     least: [f64; 2],
     window_start: f64,
 }
@@ -136,11 +136,6 @@ impl Trend {
         self.newest() > 2.0 * MAX_STANDING + 3.0 * self.noise
     }
 
-    /// Returns the mean difference between the delays of two frames in ms.
-    pub fn noise(&self) -> f64 {
-        self.noise
-    }
-
     /// Returns by how much all of the newest frames were delayed more than the fastest, in ms.
     fn standing(&self) -> f64 {
         let newest = self.delays.iter().map(|[_, delay]| *delay).fold(f64::INFINITY, f64::min);
@@ -180,8 +175,8 @@ impl Trend {
         self.delay += variation;
         self.smoothed = SMOOTHING * self.smoothed + (1.0 - SMOOTHING) * self.delay;
         self.points.push_back([arrived, self.smoothed]);
-        while self.points.len() > MOST
-            || (self.points.len() > FEWEST && arrived - self.points[0][0] > LONGEST)
+        while self.points.len() > MAX_POINTS
+            || (self.points.len() > MIN_POINTS && arrived - self.points[0][0] > MAX_SPAN)
         {
             self.points.pop_front();
         }
@@ -191,7 +186,7 @@ impl Trend {
 
     /// Returns the slope of the line through the points: by how much the delay grows in a unit of time.
     fn slope(&self) -> Option<f64> {
-        if self.points.len() < FEWEST {
+        if self.points.len() < MIN_POINTS {
             return None;
         }
         let count = self.points.len() as f64;

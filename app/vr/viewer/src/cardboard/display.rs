@@ -9,7 +9,7 @@ use super::fence::Fence;
 use super::timewarp::PositionalTimewarp;
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
-use crate::frame::{FrameReport, FrameTiming};
+use crate::frame::{FrameTiming, PresentReport};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, Eye, EyePair, FoveationLevel, Pose};
 use yoro_gl::{Context, Destination, GlError};
@@ -272,7 +272,7 @@ impl Cardboard {
             self.tracker.recenter();
         }
         if let Some(settings) = self.viewer.take_settings() {
-            let folders = self.viewer.folders().to_vec();
+            let folders = self.viewer.folders.clone();
             self.change(settings, &folders, |viewer, settings| viewer.change(settings, &folders))?;
             self.viewer.write_menu();
             self.viewer.write_start_screen();
@@ -305,7 +305,11 @@ impl Cardboard {
     ///
     /// # Errors
     /// Those of the calls above.
-    pub fn frame(&mut self, window: &Destination, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
+    pub fn frame(
+        &mut self,
+        window: &Destination,
+        timing: &FrameTiming,
+    ) -> Result<PresentReport, ViewerError> {
         self.render(timing)?;
         self.present(window, timing)
     }
@@ -368,7 +372,7 @@ impl Cardboard {
         &mut self,
         window: &Destination,
         timing: &FrameTiming,
-    ) -> Result<FrameReport, ViewerError> {
+    ) -> Result<PresentReport, ViewerError> {
         let displayed = self.head(timing).1;
         let now = self.eyes(displayed);
         let corner = self.corner();
@@ -376,7 +380,8 @@ impl Cardboard {
         if self.viewer.is_start_screen() {
             self.viewer.draw_start_screen(window);
             attached.presented.set();
-            return Ok(FrameReport::of_start_screen(self.viewer.scene_state()));
+            // Not a frame of the session.
+            return Ok(PresentReport { scene: self.viewer.scene_state(), ..PresentReport::default() });
         }
         let Attached { images, timewarp, lens, .. } = attached;
         let mut turn = Quat::IDENTITY;

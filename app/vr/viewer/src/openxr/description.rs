@@ -1,6 +1,6 @@
 //! Options of a headset's sessions, and descriptions of sessions and frames.
 
-use crate::frame::FrameReport;
+use crate::frame::PresentReport;
 use yoro::eyes::EyePair;
 
 /// Options of a session, in addition to the viewer's settings.
@@ -84,7 +84,7 @@ pub struct Capture {
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// The viewer's report; `None` for a frame without images, requested by the runtime while invisible.
-    pub report: Option<FrameReport>,
+    pub report: Option<PresentReport>,
     /// Working time of this program's thread on the frame, in milliseconds; waiting for the runtime is not included.
     pub cpu_ms: f64,
     /// The frame's images, if they were asked for.

@@ -90,7 +90,7 @@ impl Headset {
             open()
         })?;
         let mut headset = Headset {
-            description: session.description().clone(),
+            description: session.description.clone(),
             session: Some(session),
             viewer,
             runtime,
@@ -207,7 +207,7 @@ impl Headset {
         }
         match Session::open(&self.runtime, graphics, &self.gl, self.viewer.settings(), &self.options) {
             Ok(session) => {
-                self.description = session.description().clone();
+                self.description = session.description.clone();
                 self.session = Some(session);
                 self.frames = 0;
                 self.restarts += 1;
@@ -226,7 +226,7 @@ impl Headset {
         self.exit = Some(Instant::now());
         // A session that is not running has nothing to end.
         if let Some(session) = &self.session
-            && session.is_running()
+            && session.is_running
         {
             match session.request_exit() {
                 Ok(()) => return,
@@ -244,7 +244,7 @@ impl Headset {
     /// Queues an action of the user for the next frame.
     pub fn event(&mut self, event: Event) {
         if let Some(session) = &mut self.session {
-            session.event(event);
+            session.events.push(event);
         }
     }
 
@@ -255,7 +255,7 @@ impl Headset {
 
     /// True if the runtime wants frames; then [`Headset::step`] waits for the display.
     pub fn is_running(&self) -> bool {
-        self.session.as_ref().is_some_and(Session::is_running)
+        self.session.as_ref().is_some_and(|session| session.is_running)
     }
 
     /// Returns the application.

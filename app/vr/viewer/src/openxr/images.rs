@@ -19,9 +19,9 @@ const TIMEOUT: Duration = Duration::from_secs(3);
 /// The length of a single wait. Between waits the program can still be interrupted.
 const WAIT_NS: i64 = 250_000_000;
 
-/// The kind of a swapchain's images.
+/// The description of a swapchain's images.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kind {
+pub(super) struct ImageSpec {
     /// GL's internal format.
     pub format: u32,
     pub is_depth: bool,
@@ -43,7 +43,7 @@ pub(super) struct Images {
     textures: Vec<glow::Texture>,
     swapchain: xr::Swapchain<xr::OpenGlEs>,
     instance: xr::Instance,
-    kind: Kind,
+    spec: ImageSpec,
     /// The image that is being drawn into.
     current: Option<usize>,
 }
@@ -54,16 +54,16 @@ impl Images {
         graphics: &dyn Graphics,
         gl: &Rc<Context>,
         session: &xr::Session<xr::OpenGlEs>,
-        kind: Kind,
+        spec: ImageSpec,
     ) -> Result<Images, XrError> {
         let mut usage = xr::SwapchainUsageFlags::COLOR_ATTACHMENT;
-        if kind.is_depth {
+        if spec.is_depth {
             usage = xr::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT;
         }
-        if kind.is_sampled || !kind.is_depth {
+        if spec.is_sampled || !spec.is_depth {
             usage |= xr::SwapchainUsageFlags::SAMPLED;
         }
-        let foveation = kind.foveation.map(|flags| sys::SwapchainCreateInfoFoveationFB {
+        let foveation = spec.foveation.map(|flags| sys::SwapchainCreateInfoFoveationFB {
             ty: sys::SwapchainCreateInfoFoveationFB::TYPE,
             next: std::ptr::null_mut(),
             flags,
@@ -73,12 +73,12 @@ impl Images {
             next: foveation.as_ref().map_or(std::ptr::null(), |info| std::ptr::from_ref(info).cast()),
             create_flags: xr::SwapchainCreateFlags::EMPTY,
             usage_flags: usage,
-            format: kind.format.into(),
+            format: spec.format.into(),
             sample_count: 1,
-            width: kind.size[0],
-            height: kind.size[1],
+            width: spec.size[0],
+            height: spec.size[1],
             face_count: 1,
-            array_size: kind.layers,
+            array_size: spec.layers,
             mip_count: 1,
         };
         let mut swapchain = sys::Swapchain::NULL;
@@ -102,11 +102,11 @@ impl Images {
         let textures = images.into_iter().map(name).collect::<Result<Vec<_>, _>>()?;
         let framebuffers = textures.iter().map(|texture| {
             let framebuffer = |layer| {
-                let layer = (kind.layers > 1).then_some(layer);
+                let layer = (spec.layers > 1).then_some(layer);
                 // SAFETY: the textures live as long as the swapchain, which the framebuffers do not outlive.
-                unsafe { ForeignTarget::new(gl, *texture, layer, kind.is_depth, kind.size) }
+                unsafe { ForeignTarget::new(gl, *texture, layer, spec.is_depth, spec.size) }
             };
-            (0..kind.layers).map(framebuffer).collect::<Result<Vec<_>, _>>().map_err(XrError::Gl)
+            (0..spec.layers).map(framebuffer).collect::<Result<Vec<_>, _>>().map_err(XrError::Gl)
         });
         Ok(Images {
             framebuffers: framebuffers.collect::<Result<_, _>>()?,
@@ -114,7 +114,7 @@ impl Images {
             textures,
             swapchain,
             instance: session.instance().clone(),
-            kind,
+            spec,
             current: None,
         })
     }
@@ -145,7 +145,9 @@ impl Images {
             }
         }
         if index as usize >= self.framebuffers.len() {
-            return Err(XrError::InvalidRuntimeData(format!("names an image number {index} that does not exist")));
+            return Err(XrError::InvalidRuntimeData(format!(
+                "names an image number {index} that does not exist"
+            )));
         }
         self.current = Some(index as usize);
         Ok(())
@@ -181,20 +183,21 @@ impl Images {
     fn with_depth(
         &mut self,
         gl: &Rc<Context>,
-        (layer, size): (u32, [u32; 2]),
-        (depth, depth_layer): (&Images, u32),
+        layer: u32,
+        size: [u32; 2],
+        depth: ImageLayer,
     ) -> Result<Option<Destination>, GlError> {
-        let Some((color, with)) = self.current.zip(depth.current) else { return Ok(None) };
+        let Some((color, with)) = self.current.zip(depth.images.current) else { return Ok(None) };
         let key = [color, layer as usize, with];
         if let Some((_, target)) = self.with_depth.iter().find(|(known, _)| *known == key) {
             return Ok(Some(target.part(size)));
         }
-        let of = |images: &Images, layer| (images.kind.layers > 1).then_some(layer);
+        let of = |images: &Images, layer| (images.spec.layers > 1).then_some(layer);
         // SAFETY: the textures live as long as their swapchains, which are closed together with the framebuffers.
         let target = unsafe {
             let target =
-                ForeignTarget::new(gl, self.textures[color], of(self, layer), false, self.kind.size)?;
-            target.attach_depth(gl, depth.textures[with], of(depth, depth_layer))?;
+                ForeignTarget::new(gl, self.textures[color], of(self, layer), false, self.spec.size)?;
+            target.attach_depth(gl, depth.images.textures[with], of(depth.images, depth.layer))?;
             target
         };
         let part = target.part(size);
@@ -204,7 +207,7 @@ impl Images {
 
     /// Returns the acquired image, if it is a plain 2-D texture of 8-bit sRGB.
     fn texture(&self) -> Option<(glow::Texture, Image)> {
-        let Kind { format, size, layers, .. } = self.kind;
+        let ImageSpec { format, size, layers, .. } = self.spec;
         let is_plain = layers == 1 && format == glow::SRGB8_ALPHA8;
         let texture = *self.textures.get(self.current?)?;
         is_plain.then_some((texture, Image { format: Format::Srgb8Alpha8, size, samples: 1 }))
@@ -223,23 +226,30 @@ impl Images {
     }
 }
 
+/// A layer of a swapchain's images.
+#[derive(Clone, Copy)]
+struct ImageLayer<'a> {
+    images: &'a Images,
+    layer: u32,
+}
+
 /// The images of both eyes: two layers of one swapchain, or two swapchains if the runtime does not support arrays.
 pub(super) struct EyeImages(Vec<Images>);
 
 impl EyeImages {
-    /// Creates the images. `kind.layers` is ignored: two layers are tried first.
+    /// Creates the images. `spec.layers` is ignored: two layers are tried first.
     pub fn new(
         graphics: &dyn Graphics,
         gl: &Rc<Context>,
         session: &xr::Session<xr::OpenGlEs>,
-        kind: Kind,
+        spec: ImageSpec,
     ) -> Result<EyeImages, XrError> {
-        match Images::new(graphics, gl, session, Kind { layers: 2, ..kind }) {
+        match Images::new(graphics, gl, session, ImageSpec { layers: 2, ..spec }) {
             Ok(images) => Ok(EyeImages(vec![images])),
             Err(error) if error.is_loss() => Err(error),
             Err(error) => {
                 log::info!("each eye has its own swapchain, since {error}");
-                let single = || Images::new(graphics, gl, session, Kind { layers: 1, ..kind });
+                let single = || Images::new(graphics, gl, session, ImageSpec { layers: 1, ..spec });
                 Ok(EyeImages(vec![single()?, single()?]))
             }
         }
@@ -260,9 +270,9 @@ impl EyeImages {
         if self.is_array() { (0, eye.index() as u32) } else { (eye.index(), 0) }
     }
 
-    fn of(&self, eye: Eye) -> (&Images, u32) {
+    fn of(&self, eye: Eye) -> ImageLayer<'_> {
         let (swapchain, layer) = self.place(eye);
-        (&self.0[swapchain], layer)
+        ImageLayer { images: &self.0[swapchain], layer }
     }
 
     pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
@@ -280,7 +290,7 @@ impl EyeImages {
     /// Returns the destinations of both eyes.
     pub fn destinations(&self, size: [u32; 2]) -> Option<[Destination; 2]> {
         let [left, right] = Eye::BOTH.map(|eye| {
-            let (images, layer) = self.of(eye);
+            let ImageLayer { images, layer } = self.of(eye);
             images.destination(layer, size)
         });
         Some([left?, right?])
@@ -295,7 +305,7 @@ impl EyeImages {
     ) -> Result<Option<[Destination; 2]>, GlError> {
         let mut of = |eye| {
             let (swapchain, layer) = self.place(eye);
-            self.0[swapchain].with_depth(gl, (layer, size), depth.of(eye))
+            self.0[swapchain].with_depth(gl, layer, size, depth.of(eye))
         };
         Ok(of(Eye::Left)?.zip(of(Eye::Right)?).map(|(left, right)| [left, right]))
     }
@@ -304,13 +314,13 @@ impl EyeImages {
     pub fn targets(&self, size: [u32; 2]) -> Option<[EyeTarget<'static>; 2]> {
         let colors = self.destinations(size)?;
         Some(Eye::BOTH.map(|eye| EyeTarget {
-            texture: self.of(eye).0.texture(),
+            texture: self.of(eye).images.texture(),
             ..EyeTarget::rectangle(colors[eye.index()])
         }))
     }
 
     pub fn sub_image(&self, eye: Eye, size: [u32; 2]) -> sys::SwapchainSubImage {
-        let (images, layer) = self.of(eye);
+        let ImageLayer { images, layer } = self.of(eye);
         images.sub_image(layer, size)
     }
 }

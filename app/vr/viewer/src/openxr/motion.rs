@@ -8,7 +8,7 @@ use openxr as xr;
 use xr::sys;
 
 use super::error::{XrError, check, optional};
-use super::images::{EyeImages, Kind};
+use super::images::{EyeImages, ImageSpec};
 use super::storage;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Ndc, Pose};
 use yoro_context::Graphics;
@@ -24,7 +24,7 @@ enum Extension {
 
 /// The last frame that vectors point to.
 #[derive(Clone, Copy)]
-struct Former {
+struct PreviousFrame {
     /// The eyes in the scene.
     eyes: EyePair,
     /// The place of the user's straight ahead in the scene. If it changes, the user has jumped.
@@ -37,7 +37,7 @@ pub(super) struct MotionImages {
     vectors: EyeImages,
     depth: EyeImages,
     size: [u32; 2],
-    former: Option<Former>,
+    previous: Option<PreviousFrame>,
 }
 
 /// The structure that tells a runtime of a view's vectors, chained to the view.
@@ -89,12 +89,12 @@ impl MotionImages {
             return Ok(None);
         };
         let images = |format, is_depth| {
-            let kind = Kind { format, is_depth, is_sampled: true, size, layers: 2, foveation: None };
-            EyeImages::new(graphics, gl, session, kind)
+            let spec = ImageSpec { format, is_depth, is_sampled: true, size, layers: 2, foveation: None };
+            EyeImages::new(graphics, gl, session, spec)
         };
         let made = images(vectors, false).and_then(|vectors| Ok((vectors, images(depth, true)?)));
         let made = optional(WHAT, made)?;
-        Ok(made.map(|(vectors, depth)| MotionImages { extension, vectors, depth, size, former: None }))
+        Ok(made.map(|(vectors, depth)| MotionImages { extension, vectors, depth, size, previous: None }))
     }
 
     /// Returns the extension's name.
@@ -123,9 +123,9 @@ impl MotionImages {
         eyes: [EyeTarget<'a>; 2],
         place: Pose,
     ) -> Result<[EyeTarget<'a>; 2], XrError> {
-        let former = self.former.filter(|former| former.place == place);
+        let previous = self.previous.filter(|previous| previous.place == place);
         let images = self.vectors.with_depth(gl, &self.depth, self.size)?;
-        let Some((former, images)) = former.zip(images) else { return Ok(eyes) };
+        let Some((previous, images)) = previous.zip(images) else { return Ok(eyes) };
         // XR_EXT_frame_synthesis has one convention for z, XR_FB_space_warp that of the graphics interface. The direction of y is
         // open. On OpenGL ES, all runtimes on which Godot tried the former take it upwards, as it is here; on Vulkan, Android
         // XR's takes it downwards, Meta's and Pico's upwards (Godot's pull request 119056).
@@ -134,14 +134,14 @@ impl MotionImages {
             Extension::SpaceWarp => Ndc::MinusOneToOne,
         };
         Ok(Eye::BOTH.map(|eye| {
-            let motion = MotionTarget { to: images[eye.index()], former: former.eyes.view(eye), ndc };
+            let motion = MotionTarget { to: images[eye.index()], previous: previous.eyes.view(eye), ndc };
             EyeTarget { motion: Some(motion), ..eyes[eye.index()] }
         }))
     }
 
     /// Remembers the eyes of a frame in the scene; `None` if the next one must not be compared with it.
     pub fn remember(&mut self, frame: Option<(EyePair, Pose)>) {
-        self.former = frame.map(|(eyes, place)| Former { eyes, place });
+        self.previous = frame.map(|(eyes, place)| PreviousFrame { eyes, place });
     }
 
     /// Returns the structure for an eye's vectors, whose depth is of this range. If this frame has no vectors, the structure

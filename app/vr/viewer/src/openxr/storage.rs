@@ -216,8 +216,8 @@ mod tests {
             let to = images.each_ref().map(|image| EyeTarget::rectangle(Destination::whole(image)));
             let eyes = storage.begin(LayerTargets { wide: to, inset: None }).unwrap().wide;
             for x in 0..64u32 {
-                for (eye, EyeTarget { color: way, .. }) in Eye::BOTH.into_iter().zip(eyes) {
-                    gl.bind_framebuffer(way.framebuffer, way.origin, way.size);
+                for (eye, EyeTarget { color, .. }) in Eye::BOTH.into_iter().zip(eyes) {
+                    gl.bind_framebuffer(color.framebuffer, color.origin, color.size);
                     let grey = (x * 4 + eye.index() as u32) as f32 / 255.0;
                     gl.fill([x, 0], [1, 4], [grey, grey, grey, 1.0]);
                 }

@@ -117,7 +117,7 @@ impl Viewer {
         let render = render_settings(settings, driver);
         let renderer_differs = render != render_settings(before, driver);
         if let Some(gl) = &gl
-            && let Some(shown) = self.scene.shown()
+            && let Some(shown) = &mut self.scene.shown
             && renderer_differs
         {
             shown.prepared.renderer = Renderer::new(gl, &render, &shown.prepared.scene)?;

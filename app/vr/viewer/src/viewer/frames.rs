@@ -5,16 +5,16 @@ use glam::Vec3;
 use super::{Attached, Viewer};
 use crate::caption::Status;
 use crate::error::ViewerError;
-use crate::frame::{FrameReport, FrameTiming, SceneState};
+use crate::frame::{FrameTiming, PresentReport, SceneState};
 use yoro::choice::Cost;
 use yoro::eyes::{EyePair, Gaze, StereoViews};
-use yoro_lenses::{Content, Panel, Placement};
 use yoro_gl::{Context, GlError};
+use yoro_lenses::{Content, Panel, Placement};
 use yoro_render::stereo::{
-    Auto, DepthTarget, EyeTarget, FrameLoad, FrameReport as Rendered, FrameTargets, LayerTargets, StereoFrame,
+    Auto, DepthTarget, EyeTarget, FrameLoad, FrameReport, FrameTargets, LayerTargets, StereoFrame,
     StereoSession,
 };
-use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
+use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary};
 
 /// The sizes of the eyes' images are multiples of this many pixels, so that small changes need no new targets.
 const SIZE_STEP: f32 = 16.0;
@@ -46,11 +46,11 @@ impl Viewer {
     ///
     /// # Errors
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
-    pub fn render(&mut self, views: &StereoViews, targets: FrameTargets) -> Result<Rendered, ViewerError> {
+    pub fn render(&mut self, views: &StereoViews, targets: FrameTargets) -> Result<FrameReport, ViewerError> {
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
-        let Some(shown) = self.scene.shown() else {
+        let Some(shown) = &mut self.scene.shown else {
             show_backdrop(gl, views, targets)?;
-            return Ok(Rendered { has_depth: true, ..Rendered::default() });
+            return Ok(FrameReport { has_depth: true, ..FrameReport::default() });
         };
         shown.move_on(self.now_ns)?;
         let session = self.session.as_mut().ok_or(ViewerError::NoContext)?;
@@ -77,8 +77,8 @@ impl Viewer {
     }
 
     /// True if the display's runtime is to make every second frame.
-    pub fn leaves_frames_to_runtime(&self) -> bool {
-        self.session.as_ref().is_some_and(StereoSession::leaves_frames_to_runtime)
+    pub fn uses_runtime_frame_synthesis(&self) -> bool {
+        self.session.as_ref().is_some_and(StereoSession::uses_runtime_frame_synthesis)
     }
 
     /// Returns the HUD of this frame, if it is to be shown.
@@ -90,7 +90,7 @@ impl Viewer {
         let is_shown = self.scene_state() == SceneState::Ready;
         let is_loading = self.is_loading();
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
-        let text = self.caption.text();
+        let text = self.caption.text.as_str();
         if let Some(question) = self.stats.question() {
             let progress = Some(question.position());
             return Ok(Some(attached.hud.set(Content { text, progress }, Placement::Middle)));
@@ -127,18 +127,18 @@ impl Viewer {
     /// Writes the text of the HUD.
     fn write_caption(&mut self) {
         if let Some(question) = self.stats.question() {
-            return question.write(self.caption.text_mut());
+            return question.write(&mut self.caption.text);
         }
-        if let Some(sentence) = self.scene.failure() {
+        if let Some(sentence) = &self.scene.failure {
             return self.caption.write_sentence(sentence);
         }
         let status = Status {
-            frames: self.stats.last_line(),
-            celsius: self.stats.celsius(),
+            frames: self.stats.last_line.as_ref(),
+            celsius: self.stats.celsius,
             method: self.method_name(),
             auto: self.session.as_ref().and_then(StereoSession::auto),
             pipeline: self.pipeline_name(),
-            loading: self.scene.is_loading().then(|| self.scene.name()),
+            loading: self.scene.is_loading().then_some(self.scene.name.as_str()),
         };
         self.caption.write_status(&status, self.now_ns);
     }
@@ -147,11 +147,11 @@ impl Viewer {
     ///
     /// # Errors
     /// [`ViewerError::NoContext`], and [`ViewerError::Gl`] if a method cannot be recompiled for another quality.
-    pub fn end(&mut self, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
+    pub fn end(&mut self, timing: &FrameTiming) -> Result<PresentReport, ViewerError> {
         let &FrameTiming { now_ns, mut refresh_hz, .. } = timing;
         self.now_ns = now_ns;
         // While a runtime makes every second frame, it may give the period of the display or that of the renders.
-        if self.leaves_frames_to_runtime() {
+        if self.uses_runtime_frame_synthesis() {
             self.display_hz = self.display_hz.max(refresh_hz);
             refresh_hz = self.display_hz / 2.0;
         } else {
@@ -180,16 +180,16 @@ impl Viewer {
             self.method.is_mixed |= self.auto().is_some_and(Auto::is_measuring);
             self.adapt(&load)?;
         }
-        let was_over = self.stats.is_over();
+        let was_over = self.stats.is_over;
         if !was_over && self.stats.is_time_up(&self.settings, now_ns) && self.ask() {
-            self.stats.end();
+            self.stats.is_over = true;
         }
-        let is_over = self.stats.is_over();
-        Ok(FrameReport {
+        let is_over = self.stats.is_over;
+        Ok(PresentReport {
             scene,
             late_refreshes,
             gpu_ms,
-            telemetry_due: self.stats.is_line_due(now_ns),
+            telemetry_due: self.stats.telemetry.is_due(now_ns),
             session_over: is_over && !was_over,
             exit: is_over && self.settings.auto_exit,
         })
@@ -212,27 +212,28 @@ impl Viewer {
         Ok(())
     }
 
-    /// Ends a second and returns its log line. Call it when a [`FrameReport`] asks for it, with the device's present
+    /// Ends a second and returns its log line. Call it when a [`PresentReport`] asks for it, with the device's present
     /// state.
     pub fn telemetry(&mut self, now_ns: i64, device: &DeviceState) -> Line {
         self.thermal_headroom = device.thermal_headroom;
         let state = self.state();
         self.method.is_mixed = false;
-        self.stats.line(now_ns, &state, device)
+        self.stats.line(now_ns, state, device)
     }
 
     /// Returns the viewer's own part of a log line.
-    pub(super) fn state(&self) -> ViewerState {
-        ViewerState {
+    pub(super) fn state(&self) -> Line {
+        Line {
             method: self.method_name().to_owned(),
             pipeline: self.pipeline_name().map(str::to_owned),
             scene: self.scene_name().to_owned(),
-            render_scale: self.render_scale(),
+            render_scale: self.render_scale().into(),
             imbuffer: self.imbuffer_divisor(),
             run: self.settings.run.clone(),
             auto: self
                 .auto()
                 .map(|auto| if self.method.is_mixed { "measuring".into() } else { auto.to_string() }),
+            ..Line::default()
         }
     }
 
@@ -242,12 +243,12 @@ impl Viewer {
 
     /// Returns the summary of the session since the scene was first shown, for the log.
     pub fn summary(&self, now_ns: i64) -> SessionSummary {
-        self.stats.summary(now_ns)
+        self.stats.telemetry.summary(now_ns)
     }
 
     /// Returns the answers so far to the settings' questions; each is logged when it is given.
     pub fn ratings(&self) -> &[Rating] {
-        self.stats.ratings()
+        &self.stats.ratings
     }
 
     /// Returns the size in pixels of each eye's image on a display whose full size is `full`.

@@ -3,7 +3,7 @@
 use super::Viewer;
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
-use yoro_settings::telemetry::{Rating, ViewerState};
+use yoro_settings::telemetry::{Line, Rating};
 use yoro_settings::{Ipd, Settings};
 
 /// The step by which the IPD changes, in metres.
@@ -23,11 +23,11 @@ impl Viewer {
                 self.press(event == Event::Press);
                 return Ok(Action::Nothing);
             }
-            Event::Tap if self.menu.board().is_some() => return self.choose_pointed(),
+            Event::Tap if self.menu.board.is_some() => return self.choose_pointed(),
             Event::Tap => self.other_method(1)?,
             Event::PreviousMethod => self.other_method(-1)?,
             Event::LongPress if self.menu.is_comparing() => return Ok(Action::Nothing),
-            Event::LongPress if self.menu.board().is_some() => {
+            Event::LongPress if self.menu.board.is_some() => {
                 self.menu.close();
                 Action::Recenter
             }
@@ -94,12 +94,12 @@ impl Viewer {
     fn answer(&mut self) {
         let answer = self.stats.question_mut().and_then(|question| question.answer());
         let Some((question, rating)) = answer else { return };
-        let ViewerState { method, pipeline, scene, .. } = self.state();
+        let Line { method, pipeline, scene, .. } = self.state();
         let Settings { participant, trial, .. } = &self.settings;
         let (participant, trial, rating) = (participant.clone(), *trial, f64::from(rating));
         let rating = Rating { participant, trial, method, pipeline, scene, question, rating };
         log::info!("{rating}");
-        self.stats.keep(rating);
+        self.stats.ratings.push(rating);
     }
 
     /// Asks the settings' questions when the session's time is up; returns true if no question is left.

@@ -27,21 +27,21 @@ mod tests;
 use std::path::PathBuf;
 use std::rc::Rc;
 
+use crate::adaptive::Controller;
 use crate::caption::Caption;
 use crate::error::ViewerError;
 use crate::frame::SceneState;
 use crate::loading::SceneSource;
-use crate::adaptive::Controller;
 use crate::options::render_settings;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
 use menu::Menu;
+use session::MethodInUse;
 use start::StartScreen;
 use yoro::eyes::{FoveationLevel, Pose};
 use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::{Board, Hud};
-use session::MethodInUse;
 use yoro_render::stereo::{FrameLoad, StereoSession};
 use yoro_settings::{Ipd, Settings};
 
@@ -68,7 +68,8 @@ struct IpdSources {
 /// The application without a platform.
 pub struct Viewer {
     settings: Settings,
-    folders: Vec<PathBuf>,
+    /// The folders that are searched for scenes and viewers given by name.
+    pub(crate) folders: Vec<PathBuf>,
     scene: SceneSlot,
     method: MethodInUse,
     /// Made once a scene is loaded.
@@ -152,7 +153,7 @@ impl Viewer {
     /// [`Viewer::attach`] the scene is loaded again.
     pub fn detach(&mut self) {
         self.session = None;
-        self.scene.drop_shown();
+        self.scene.shown = None;
         self.attached = None;
     }
 
@@ -168,10 +169,10 @@ impl Viewer {
 
     /// Pauses in the background: animations stop, and the time until the next frame is not counted.
     pub fn pause(&mut self) {
-        if let Some(shown) = self.scene.shown() {
+        if let Some(shown) = &mut self.scene.shown {
             shown.pause();
         }
-        self.stats.pause();
+        self.stats.telemetry.pause();
         self.interrupt();
     }
 
@@ -205,14 +206,9 @@ impl Viewer {
         self.ipd.chosen = self.settings.ipd;
     }
 
-    /// Returns the folders that are searched for scenes and viewers given by name.
-    pub(crate) fn folders(&self) -> &[PathBuf] {
-        &self.folders
-    }
-
     /// Returns the name of the scene that is shown or being loaded.
     pub fn scene_name(&self) -> &str {
-        self.scene.name()
+        &self.scene.name
     }
 
     /// Returns the time of the last frame in nanoseconds.
@@ -237,7 +233,7 @@ impl Viewer {
 
     /// Returns the reason why the scene cannot be shown, in one sentence.
     pub fn failure(&self) -> Option<&str> {
-        self.scene.failure()
+        self.scene.failure.as_deref()
     }
 
     /// Uploads the scene if it is loaded; [`Viewer::begin`] calls this.
@@ -249,7 +245,7 @@ impl Viewer {
         if let Err(reason) = shown {
             // Logged only for information: the platform decides whether this ends the program.
             log::info!("no scene: {reason}");
-            self.scene.fail(reason);
+            self.scene.failure = Some(reason);
         }
     }
 
@@ -257,12 +253,12 @@ impl Viewer {
     fn show(&mut self, gl: &Rc<Context>, scene: Scene) -> Result<(), GlError> {
         // The old scene is dropped first: memory may not suffice for both.
         self.session = None;
-        self.scene.drop_shown();
+        self.scene.shown = None;
         self.scene.set_viewpoints(&scene.viewpoints);
         let shown = Shown::new(gl, scene, &render_settings(&self.settings, Some(gl.capabilities())))?;
         let scene = &shown.prepared.scene;
         log::info!("{}: {} triangles", scene.name, scene.triangle_count());
-        self.scene.show(shown);
+        self.scene.shown = Some(shown);
         if self.stats.begin(self.now_ns) {
             self.controller = Controller::new();
         }

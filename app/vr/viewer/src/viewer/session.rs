@@ -104,8 +104,7 @@ impl Viewer {
     fn stereo_options(&self) -> StereoOptions {
         let mut options = stereo_options(&self.settings, self.method.pipeline);
         options.motion_vectors = self.method.runtime_makes_frames;
-        let (imbuffer, divisor) =
-            (&mut options.synthesis.paper.imbuffer, self.controller.quality().imbuffer);
+        let (imbuffer, divisor) = (&mut options.synthesis.paper.imbuffer, self.controller.quality().imbuffer);
         *imbuffer = match *imbuffer {
             ImBufferSize::Divisor(n) => ImBufferSize::Divisor(n * divisor),
             ImBufferSize::Fixed(size) => ImBufferSize::Fixed(size.map(|n| (n / divisor).max(1))),
@@ -122,7 +121,7 @@ impl Viewer {
 
     /// Makes the session anew, if there is a scene for it.
     pub(super) fn make_session(&mut self) -> Result<(), GlError> {
-        if let Some(attached) = self.attached.as_ref().filter(|_| self.scene.is_shown()) {
+        if let Some(attached) = self.attached.as_ref().filter(|_| self.scene.shown.is_some()) {
             self.session = Some(self.create_session(&attached.gl.clone())?);
         }
         self.controller.restart();

@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use super::*;
 use crate::cardboard::{Cardboard, HeldHead};
 use crate::event::{Action, Event};
-use crate::frame::{FrameReport, FrameTiming};
+use crate::frame::{FrameTiming, PresentReport};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
@@ -46,7 +46,7 @@ impl Run {
         Run { viewer, window: window(gl), now_ns: 0 }
     }
 
-    fn frame(&mut self) -> FrameReport {
+    fn frame(&mut self) -> PresentReport {
         self.now_ns += PERIOD_NS;
         let timing = FrameTiming {
             now_ns: self.now_ns,
@@ -182,7 +182,7 @@ fn auto_measures_both_methods_while_nothing_is_allocated_and_says_which_and_why(
     assert!(times.len() == 2 && times[0] <= times[1], "{auto}");
     assert_eq!(line.pipeline.is_some(), line.method == "yoro");
     assert_eq!(held(gl), both, "both methods are ready from the first frame on");
-    let seen = run.viewer.viewer().caption.text();
+    let seen = &run.viewer.viewer().caption.text;
     assert!(seen.contains(&format!("auto:{} {auto}\n", line.method)), "{seen}");
     let chosen = run.viewer.viewer().rendering_method();
     assert_eq!((chosen.name(), run.viewer.viewer().method()), (line.method.as_str(), MethodChoice::Auto));
@@ -375,11 +375,11 @@ fn only_settings_that_differ_take_effect() {
     viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "msaa=4"]), &[]).unwrap();
     assert_eq!((viewer.viewer().method(), viewer.viewer().ipd()), (tapped, Ipd::nearest(0.05)));
     assert!((viewer.optics().params().inter_lens - 0.060).abs() < 1e-6);
-    let told = viewer.optics().screen();
+    let reported = viewer.optics().screen();
     viewer.configure(with(&viewer, &["screen=158x71mm"]), &[]).unwrap();
     assert_eq!(viewer.optics().screen(), [0.158, 0.071]);
     viewer.configure(with(&viewer, &["screen=auto"]), &[]).unwrap();
-    assert_eq!(viewer.optics().screen(), told);
+    assert_eq!(viewer.optics().screen(), reported);
     viewer.configure(with(&viewer, &["ipd=auto"]), &[]).unwrap();
     assert_eq!(viewer.viewer().ipd(), Ipd::nearest(viewer.optics().params().inter_lens));
     viewer.configure(with(&viewer, &["seed=2"]), &[]).unwrap();

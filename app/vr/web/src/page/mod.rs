@@ -104,7 +104,7 @@ impl Page {
     }
 
     /// Returns the defaults of the choices that all programs have, and the largest distance between the eyes, as JSON:
-    /// `{"method", "msaa", "dominant", "ipd", "mostIpd"}`. Distances are in millimetres.
+    /// `{"method", "msaa", "dominant", "ipd", "maxIpd"}`. Distances are in millimetres.
     #[wasm_bindgen(js_name = defaultChoices)]
     pub fn default_choices() -> String {
         let Settings { method, msaa, dominant, ipd, .. } = Settings::default();
@@ -114,7 +114,7 @@ impl Page {
             "msaa": msaa,
             "dominant": dominant,
             "ipd": millimetres(ipd),
-            "mostIpd": millimetres(Ipd::MAX),
+            "maxIpd": millimetres(Ipd::MAX),
         })
         .to_string()
     }
@@ -199,7 +199,7 @@ impl Page {
         yoro_files::provide([]);
         let pair = pair.map_err(sentence)?;
         let pictures = PictureShow::new(&self.gl, &self.show, pair, options, self.settings.ipd.metres())?;
-        let size = pictures.size().to_vec();
+        let size = pictures.pair.size.to_vec();
         self.content = Content::Pictures(Box::new(pictures));
         Ok(size)
     }
@@ -239,7 +239,7 @@ impl Page {
             self.measure_again();
         }
         if let Content::Stream(stream) = &self.content
-            && stream.frusta().is_some()
+            && stream.frusta.is_some()
         {
             self.walker = Walker::new(Pose::IDENTITY);
             self.orbit(self.orbits);
@@ -416,7 +416,7 @@ impl Page {
         };
         let (eyes, size) = match &mut self.content {
             Content::Empty => return Err(JsError::new("There is no picture to save.")),
-            Content::Pictures(pictures) => (read(&pictures.frame), pictures.size()),
+            Content::Pictures(pictures) => (read(&pictures.frame), pictures.pair.size),
             Content::Scene(scene) => (read(&scene.frame), scene.frame.eye(Eye::Left).size()),
             Content::Stream(stream) => (read(&stream.frame), stream.frame.eye(Eye::Left).size()),
         };
@@ -433,7 +433,7 @@ impl Page {
 impl Page {
     fn auto(&self) -> Option<&Auto> {
         match &self.content {
-            Content::Scene(scene) => scene.auto(),
+            Content::Scene(scene) => scene.session.auto(),
             _ => None,
         }
     }

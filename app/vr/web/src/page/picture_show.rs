@@ -15,7 +15,7 @@ use crate::settings::{Display, Settings};
 
 /// Everything needed to show a pair of pictures.
 pub struct PictureShow {
-    pair: PicturePair,
+    pub pair: PicturePair,
     options: PictureOptions,
     pipeline: Gather,
     color: Texture,
@@ -84,11 +84,6 @@ impl PictureShow {
             show.image(&self.color, &Destination::whole(self.frame.eye(eye)));
         }
         Ok(())
-    }
-
-    /// Returns the width and height of the pictures in pixels.
-    pub fn size(&self) -> [u32; 2] {
-        self.pair.size
     }
 
     /// Shows the whole eyes on a cleared canvas, with black beside them.

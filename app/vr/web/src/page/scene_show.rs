@@ -140,7 +140,7 @@ impl SceneShow {
 
     /// Ends a frame that was handed to the display at `now_ms`, and counts it if the choice of the method is automatic.
     pub fn end(&mut self, gl: &Context, now_ms: f64, refresh_hz: f32) {
-        let is_auto = self.auto().is_some();
+        let is_auto = self.session.auto().is_some();
         let wants_times = is_auto && gl.capabilities().timer_queries;
         if wants_times != gl.times_passes() {
             gl.set_profiling(if wants_times { Profiling::Queries } else { Profiling::Off });
@@ -157,15 +157,9 @@ impl SceneShow {
             ended_ns: (now_ms * 1e6) as i64,
             refresh_hz,
             display_hz: refresh_hz,
-            late_refreshes: 0,
             gpu,
-            thermal_headroom: None,
+            ..FrameLoad::default()
         });
-    }
-
-    /// Returns the automatic choice between two methods, if there is one.
-    pub fn auto(&self) -> Option<&Auto> {
-        self.session.auto()
     }
 
     /// Returns the real render of the non-dominant eye, if the display needs it.

@@ -52,7 +52,7 @@ impl Page {
             _ => return Err(JsError::new(&Refusal::Version.to_string())),
         };
         let frusta = video.map(|(frusta, _)| frusta);
-        if !matches!(&self.content, Content::Stream(stream) if stream.frusta() == frusta) {
+        if !matches!(&self.content, Content::Stream(stream) if stream.frusta == frusta) {
             self.content = Content::Empty;
             let stream = StreamShow::new(&self.gl, frusta).map_err(sentence)?;
             self.content = Content::Stream(Box::new(stream));

@@ -13,7 +13,7 @@ use yoro_stream::StreamedEyes;
 pub struct StreamShow {
     pub eyes: StreamedEyes,
     /// The frusta of a video's eyes, beyond which it has nothing; `None` if the frusta are the page's.
-    frusta: Option<[Frustum; 2]>,
+    pub frusta: Option<[Frustum; 2]>,
     /// The eyes' images for the canvas.
     pub frame: StereoFrame,
 }
@@ -27,11 +27,6 @@ impl StreamShow {
         let (mut eyes, frame) = (StreamedEyes::new(gl)?, StereoFrame::new(gl, [1, 1])?);
         eyes.framed = frusta.is_some();
         Ok(StreamShow { eyes, frusta, frame })
-    }
-
-    /// Returns the frusta of a video.
-    pub fn frusta(&self) -> Option<[Frustum; 2]> {
-        self.frusta
     }
 
     /// Returns the layout of the eyes in parts of a canvas, each of size `part`, and the eyes of a head there: the

@@ -204,7 +204,7 @@ impl Contenders {
         Eye::BOTH.map(|eye| EyeTarget {
             motion: Some(MotionTarget {
                 to: Destination::whole(&self.vectors[eye.index()]),
-                former: previous.view(eye),
+                previous: previous.view(eye),
                 ndc: Ndc::ZeroToOne,
             }),
             ..to[eye.index()]

@@ -6,13 +6,13 @@ use std::path::PathBuf;
 
 use openxr::sys;
 
-use super::places::Place;
+use super::places::RuntimeSource;
 
 /// No place led to a runtime. `Display` writes all failures in one line.
 #[derive(Debug)]
 pub struct NotFound {
     /// The places in the order in which they were tried. A broker that offers several runtimes appears once for each.
-    pub attempts: Vec<(Place, Failure)>,
+    pub attempts: Vec<(RuntimeSource, Failure)>,
 }
 
 impl NotFound {
@@ -23,7 +23,7 @@ impl NotFound {
             matches!(
                 (place, failure),
                 (_, Failure::NoManifest { .. } | Failure::NoBroker { .. } | Failure::NoActiveRuntime { .. })
-                    | (Place::Loader(_), Failure::Open { .. })
+                    | (RuntimeSource::Loader(_), Failure::Open { .. })
             )
         })
     }

@@ -8,7 +8,7 @@
 //! 2. `dlopen` the library and call its `xrNegotiateLoaderRuntimeInterface`.
 //! 3. Use the `xrGetInstanceProcAddr` that this returns.
 //!
-//! A loader library, if one is packaged or named, takes precedence: see [`Place::Loader`].
+//! A loader library, if one is packaged or named, takes precedence: see [`RuntimeSource::Loader`].
 //!
 //! # What is bypassed
 //! API layers are the loader's job. Without it neither implicit nor explicit layers are found, so tools such as
@@ -46,7 +46,7 @@ pub use broker::{Broker, NoBroker, Rows};
 pub use error::{Failure, NotFound};
 pub use library::JavaContext;
 pub use openxr;
-pub use places::{Place, android_places, linux_places};
+pub use places::{RuntimeSource, android_places, linux_places};
 
 use library::Candidate;
 
@@ -64,7 +64,7 @@ pub struct Runtime {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// The place that led to the library.
-    pub place: Place,
+    pub place: RuntimeSource,
     /// The library as it was passed to `dlopen`.
     pub library: PathBuf,
     /// The newest OpenXR version that the runtime offers; `None` behind a loader.
@@ -110,14 +110,18 @@ impl Runtime {
 
 /// Returns the first runtime that `places` lead to, that can be loaded and that accepts OpenXR 1.
 ///
-/// `broker` answers for [`Place::Broker`]; pass [`NoBroker`] where there is none. `java` is needed on Android, where
+/// `broker` answers for [`RuntimeSource::Broker`]; pass [`NoBroker`] where there is none. `java` is needed on Android, where
 /// loaders and some runtimes require `xrInitializeLoaderKHR` before any other call.
 ///
 /// This runs code of the libraries found. Nothing is tested with `stat`, since a library may be inside an APK.
 ///
 /// # Errors
 /// [`NotFound`] with the failure at every place.
-pub fn find(places: &[Place], broker: &dyn Broker, java: Option<&JavaContext>) -> Result<Runtime, NotFound> {
+pub fn find(
+    places: &[RuntimeSource],
+    broker: &dyn Broker,
+    java: Option<&JavaContext>,
+) -> Result<Runtime, NotFound> {
     let mut attempts = Vec::new();
     for place in places {
         let candidates = match candidates(place, broker) {
@@ -137,10 +141,14 @@ pub fn find(places: &[Place], broker: &dyn Broker, java: Option<&JavaContext>) -
     Err(NotFound { attempts })
 }
 
-fn load(place: &Place, candidate: &Candidate, java: Option<&JavaContext>) -> Result<Runtime, Failure> {
+fn load(
+    place: &RuntimeSource,
+    candidate: &Candidate,
+    java: Option<&JavaContext>,
+) -> Result<Runtime, Failure> {
     let (get_instance_proc_addr, api_version) = match place {
-        Place::Loader(_) => (candidate.open_loader(java)?, None),
-        Place::Broker(_) | Place::Manifest(_) => {
+        RuntimeSource::Loader(_) => (candidate.open_loader(java)?, None),
+        RuntimeSource::Broker(_) | RuntimeSource::Manifest(_) => {
             let (function, version) = candidate.negotiate(java)?;
             (function, Some((version.major(), version.minor(), version.patch())))
         }
@@ -150,12 +158,15 @@ fn load(place: &Place, candidate: &Candidate, java: Option<&JavaContext>) -> Res
 }
 
 /// Returns the libraries that a place names, in the order in which to try them.
-fn candidates(place: &Place, broker: &dyn Broker) -> Result<Vec<Result<Candidate, Failure>>, Failure> {
+fn candidates(
+    place: &RuntimeSource,
+    broker: &dyn Broker,
+) -> Result<Vec<Result<Candidate, Failure>>, Failure> {
     match place {
-        Place::Loader(library) => {
+        RuntimeSource::Loader(library) => {
             Ok(vec![Ok(Candidate { library: library.clone(), functions: Default::default() })])
         }
-        Place::Broker(authority) => broker::ask(broker, authority),
-        Place::Manifest(path) => Ok(vec![Ok(manifest::read(path)?)]),
+        RuntimeSource::Broker(authority) => broker::ask(broker, authority),
+        RuntimeSource::Manifest(path) => Ok(vec![Ok(manifest::read(path)?)]),
     }
 }

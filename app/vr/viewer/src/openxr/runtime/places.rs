@@ -14,7 +14,7 @@ const ANDROID_LOADER: &str = "libopenxr_loader.so";
 
 /// A place to look for a runtime.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Place {
+pub enum RuntimeSource {
     /// A loader library, by its path or by a plain name for `dlopen` to find. The loader finds the runtime and API
     /// layers by its own rules.
     Loader(PathBuf),
@@ -24,21 +24,21 @@ pub enum Place {
     Manifest(PathBuf),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for RuntimeSource {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Place::Loader(library) => write!(f, "loader {}", library.display()),
-            Place::Broker(authority) => write!(f, "broker {authority}"),
-            Place::Manifest(path) => write!(f, "{}", path.display()),
+            RuntimeSource::Loader(library) => write!(f, "loader {}", library.display()),
+            RuntimeSource::Broker(authority) => write!(f, "broker {authority}"),
+            RuntimeSource::Manifest(path) => write!(f, "{}", path.display()),
         }
     }
 }
 
 /// Returns Android's places: the loader in the application's own package if there is one, the brokers, and the manifest
 /// files on the system's partitions.
-pub fn android_places() -> Vec<Place> {
-    let mut places = vec![Place::Loader(ANDROID_LOADER.into())];
-    places.extend(AUTHORITIES.map(|authority| Place::Broker(authority.into())));
+pub fn android_places() -> Vec<RuntimeSource> {
+    let mut places = vec![RuntimeSource::Loader(ANDROID_LOADER.into())];
+    places.extend(AUTHORITIES.map(|authority| RuntimeSource::Broker(authority.into())));
     places.extend(ANDROID_ETC.into_iter().flat_map(|etc| manifests(Path::new(etc))));
     places
 }
@@ -48,10 +48,10 @@ pub fn android_places() -> Vec<Place> {
 ///
 /// `environment` is asked for `XR_RUNTIME_JSON`, `XDG_CONFIG_HOME`, `XDG_CONFIG_DIRS` and `HOME`. In a program that
 /// runs with more privileges than its user, it should return `None`.
-pub fn linux_places(environment: impl Fn(&str) -> Option<OsString>) -> Vec<Place> {
+pub fn linux_places(environment: impl Fn(&str) -> Option<OsString>) -> Vec<RuntimeSource> {
     let set = |name: &str| environment(name).filter(|value| !value.is_empty());
     if let Some(manifest) = set("XR_RUNTIME_JSON") {
-        return vec![Place::Manifest(manifest.into())];
+        return vec![RuntimeSource::Manifest(manifest.into())];
     }
     let user = set("XDG_CONFIG_HOME")
         .map(PathBuf::from)
@@ -60,7 +60,7 @@ pub fn linux_places(environment: impl Fn(&str) -> Option<OsString>) -> Vec<Place
     let mut directories: Vec<PathBuf> = user.into_iter().collect();
     directories.extend(std::env::split_paths(&system).filter(|path| !path.as_os_str().is_empty()));
     directories.push("/etc".into());
-    let mut places: Vec<Place> = Vec::new();
+    let mut places: Vec<RuntimeSource> = Vec::new();
     for place in directories.iter().flat_map(|directory| manifests(directory)) {
         if !places.contains(&place) {
             places.push(place);
@@ -70,7 +70,7 @@ pub fn linux_places(environment: impl Fn(&str) -> Option<OsString>) -> Vec<Place
 }
 
 /// Returns the manifests in a configuration folder: the one for this architecture before the general one.
-fn manifests(configuration: &Path) -> [Place; 2] {
+fn manifests(configuration: &Path) -> [RuntimeSource; 2] {
     let architecture = match std::env::consts::ARCH {
         "x86" => "i686",
         "arm" => "armv7a-vfp",
@@ -78,5 +78,5 @@ fn manifests(configuration: &Path) -> [Place; 2] {
     };
     let folder = configuration.join("openxr/1");
     [format!("active_runtime.{architecture}.json"), "active_runtime.json".into()]
-        .map(|name| Place::Manifest(folder.join(name)))
+        .map(|name| RuntimeSource::Manifest(folder.join(name)))
 }

@@ -57,7 +57,7 @@ impl Written {
     }
 
     fn find(&self, java: Option<&JavaContext>) -> Result<Runtime, NotFound> {
-        find(&[Place::Manifest(self.path())], &NoBroker, java)
+        find(&[RuntimeSource::Manifest(self.path())], &NoBroker, java)
     }
 
     /// Returns the failure's sentence without this folder's path.
@@ -94,7 +94,7 @@ fn a_library_is_relative_to_the_real_manifest() {
     let elsewhere = tempfile::tempdir().unwrap();
     let link = elsewhere.path().join("active_runtime.json");
     std::os::unix::fs::symlink(manifest.path(), &link).unwrap();
-    let runtime = find(&[Place::Manifest(link)], &NoBroker, None).unwrap();
+    let runtime = find(&[RuntimeSource::Manifest(link)], &NoBroker, None).unwrap();
     assert!(runtime.found().library.ends_with("lib/r.so"));
 }
 
@@ -131,7 +131,7 @@ fn damaged_manifests_are_named() {
         assert!(failure.contains("runtime.json") && failure.contains(expected), "{text}: {failure}");
     }
     let folder = tempfile::tempdir().unwrap();
-    let error = find(&[Place::Manifest(folder.path().into())], &NoBroker, None).unwrap_err();
+    let error = find(&[RuntimeSource::Manifest(folder.path().into())], &NoBroker, None).unwrap_err();
     assert!(matches!(error.attempts[0].1, Failure::ReadManifest { .. }), "{error}");
 }
 
@@ -196,12 +196,13 @@ fn java_is_passed_before_or_after_the_negotiation() {
 #[test]
 fn a_loader_is_preferred_and_optional() {
     let manifest = Written::fixture(&[]);
-    let places = |loader: &Path| [Place::Loader(loader.into()), Place::Manifest(manifest.path())];
+    let places =
+        |loader: &Path| [RuntimeSource::Loader(loader.into()), RuntimeSource::Manifest(manifest.path())];
     let runtime = find(&places(fixture()), &NoBroker, None).unwrap();
     assert_eq!(runtime.found().to_string(), format!("OpenXR by the loader {}", fixture().display()));
     assert!(runtime.entry().unwrap().enumerate_extensions().is_ok());
     let without = find(&places(Path::new("libopenxr_loader_absent.so")), &NoBroker, None).unwrap();
-    assert_eq!(without.found().place, Place::Manifest(manifest.path()));
+    assert_eq!(without.found().place, RuntimeSource::Manifest(manifest.path()));
     let error = find(&places(Path::new("libm.so.6"))[..1], &NoBroker, None).unwrap_err().to_string();
     assert_eq!(
         error,
@@ -238,8 +239,8 @@ fn row(cells: &[&str]) -> Vec<Option<String>> {
     cells.iter().map(|cell| Some(cell.to_string())).collect()
 }
 
-fn brokers() -> Vec<Place> {
-    android_places().into_iter().filter(|place| matches!(place, Place::Broker(_))).collect()
+fn brokers() -> Vec<RuntimeSource> {
+    android_places().into_iter().filter(|place| matches!(place, RuntimeSource::Broker(_))).collect()
 }
 
 #[test]
@@ -250,7 +251,7 @@ fn the_brokers_are_asked_in_turn() {
     let gone = row(&["org.example.gone", "/system/app/Gone.apk!/lib/arm64-v8a", "libgone.so", "0"]);
     broker.tables.insert(active(SYSTEM), Ok(Some(vec![gone, good])));
     let runtime = find(&brokers(), &broker, None).unwrap();
-    assert_eq!(runtime.found().place, Place::Broker(SYSTEM.into()));
+    assert_eq!(runtime.found().place, RuntimeSource::Broker(SYSTEM.into()));
     assert_eq!(runtime.found().library, fixture());
     assert_eq!(*broker.asked.borrow(), [active(USER), active(SYSTEM)]);
 }
@@ -328,7 +329,7 @@ fn places_follow_the_conventions() {
         ]),
         [both("/c"), both("/a"), both("/etc")].concat()
     );
-    let android: Vec<_> = android_places().iter().map(Place::to_string).collect();
+    let android: Vec<_> = android_places().iter().map(RuntimeSource::to_string).collect();
     assert_eq!(
         android[..3],
         ["loader libopenxr_loader.so", &format!("broker {USER}"), &format!("broker {SYSTEM}")]
@@ -340,7 +341,8 @@ fn places_follow_the_conventions() {
 
 #[test]
 fn all_failures_are_listed_in_one_line() {
-    let places = [Place::Manifest("/absent/a.json".into()), Place::Manifest("/absent/b.json".into())];
+    let places =
+        [RuntimeSource::Manifest("/absent/a.json".into()), RuntimeSource::Manifest("/absent/b.json".into())];
     let error = find(&places, &NoBroker, None).unwrap_err();
     assert!(error.nothing_installed());
     assert_eq!(

@@ -99,7 +99,7 @@ impl Session {
         }
         self.wide.acquire(graphics)?;
         self.inset.as_mut().map_or(Ok(()), |inset| inset.acquire(graphics))?;
-        let leaves_frames = viewer.leaves_frames_to_runtime();
+        let leaves_frames = viewer.uses_runtime_frame_synthesis();
         let motion = self.motion.as_mut().filter(|_| leaves_frames);
         motion.map_or(Ok(()), |motion| motion.acquire(graphics))?;
         let no_image = || XrError::InvalidRuntimeData("has no image to draw into".into());
@@ -136,7 +136,7 @@ impl Session {
         let copy = self.depth_copy.as_ref();
         let depth_size = views.wide.eyes.size;
         to.wide = self.wide.with_depth(copy, to.wide, depth_size);
-        let mut motion = self.motion.as_mut().filter(|_| viewer.leaves_frames_to_runtime());
+        let mut motion = self.motion.as_mut().filter(|_| viewer.uses_runtime_frame_synthesis());
         let leaves_frame = motion.is_some();
         if let Some(motion) = &mut motion {
             to.wide = motion.targets(&self.gl, to.wide, place)?;
@@ -249,7 +249,7 @@ impl Session {
         let mut depths = [None; MAX_VIEWS];
         for (i, (eye, (level, pair, size))) in submitted().enumerate().take(MAX_VIEWS) {
             let depth = size.zip(level.depth.as_ref());
-            depths[i] = depth.map(|(size, images)| depth_info(eye, pair, (images, size), after(i)));
+            depths[i] = depth.map(|(size, images)| depth_info(eye, pair, images, size, after(i)));
         }
         let mut views = [sys::CompositionLayerProjectionView {
             ty: sys::CompositionLayerProjectionView::TYPE,
@@ -324,7 +324,8 @@ fn poses_in_scene(viewer: &Viewer, eyes: &EyePair) -> [Pose; 2] {
 fn depth_info(
     eye: Eye,
     pair: &EyePair,
-    (images, size): (&EyeImages, [u32; 2]),
+    images: &EyeImages,
+    size: [u32; 2],
     next: *const c_void,
 ) -> sys::CompositionLayerDepthInfoKHR {
     let [near_z, far_z] = ends(&pair.depth);

@@ -12,7 +12,7 @@ use crate::openxr::error::check;
 use crate::openxr::error::{XrError, call, optional};
 use crate::openxr::fixed_foveation::{self, FixedFoveation};
 use crate::openxr::graphics::{self, make_current};
-use crate::openxr::images::{EyeImages, Images, Kind};
+use crate::openxr::images::{EyeImages, ImageSpec, Images};
 use crate::openxr::input::Input;
 use crate::openxr::mask::Mask;
 use crate::openxr::motion::{self, MotionImages};
@@ -295,8 +295,9 @@ impl FrameImages {
         })?;
         let foveation = fixed_foveation::flags(session, gl);
         let level = |LevelSize { recommended, size }: LevelSize| {
-            let kind = Kind { format: color, is_depth: false, is_sampled: true, size, layers: 2, foveation };
-            let eyes = EyeImages::new(graphics, gl, session, kind)?;
+            let spec =
+                ImageSpec { format: color, is_depth: false, is_sampled: true, size, layers: 2, foveation };
+            let eyes = EyeImages::new(graphics, gl, session, spec)?;
             Ok::<_, XrError>(RuntimeLevel { eyes, depth: None, recommended, size })
         };
         let mut levels = sizes.iter().map(|size| level(*size)).collect::<Result<Vec<_>, _>>()?;
@@ -312,7 +313,7 @@ impl FrameImages {
             graphics,
             gl,
             session,
-            Kind { format: color, is_depth: false, is_sampled: true, size, layers: 1, foveation: None },
+            ImageSpec { format: color, is_depth: false, is_sampled: true, size, layers: 1, foveation: None },
         );
         let panel = optional("there is no HUD", panel)?.map(|images| PanelImages { images, version: None });
         let mut levels = levels.into_iter();
@@ -335,8 +336,8 @@ fn make_depth(
     };
     let images = |level: &RuntimeLevel| {
         let (size, foveation) = (level.size, None);
-        let kind = Kind { format, is_depth: true, is_sampled: false, size, layers: 2, foveation };
-        EyeImages::new(graphics, gl, session, kind)
+        let spec = ImageSpec { format, is_depth: true, is_sampled: false, size, layers: 2, foveation };
+        EyeImages::new(graphics, gl, session, spec)
     };
     let (images, copy) = (levels.iter().map(images).collect::<Result<Vec<_>, _>>()?, DepthCopy::new(gl)?);
     for (level, images) in levels.iter_mut().zip(images) {

@@ -94,35 +94,23 @@ pub struct Session {
     pub(super) views: xr::ViewConfigurationType,
     pub(super) blend: xr::EnvironmentBlendMode,
     pub(super) state: xr::SessionState,
-    pub(super) is_running: bool,
+    /// True if the runtime wants frames.
+    pub is_running: bool,
     /// The refresh rate and performance that were last requested through extensions.
     pub(super) applied: Option<(Option<f32>, Performance)>,
     /// The reason why the eyes are not rendered as the runtime locates them, if so.
     pub(super) realigned: Option<EyesError>,
     pub(super) recenter: bool,
-    pub(super) events: Vec<Event>,
+    /// The user's actions, for the next frame.
+    pub events: Vec<Event>,
     pub(super) last_error: String,
-    pub(super) description: Description,
+    pub description: Description,
 }
 
 impl Session {
-    pub fn description(&self) -> &Description {
-        &self.description
-    }
-
     /// True if the runtime can make frames between those that are rendered.
     pub fn makes_frames(&self) -> bool {
         self.motion.is_some()
-    }
-
-    /// True if the runtime wants frames.
-    pub fn is_running(&self) -> bool {
-        self.is_running
-    }
-
-    /// Queues an action of the user for the next frame.
-    pub fn event(&mut self, event: Event) {
-        self.events.push(event);
     }
 
     /// Asks the runtime to end the session.

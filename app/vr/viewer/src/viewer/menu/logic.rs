@@ -55,12 +55,13 @@ pub(in crate::viewer) type Choice = (Item, isize);
 #[derive(Default)]
 pub(in crate::viewer) struct Menu {
     /// The pose of the open panel, relative to the viewpoint.
-    board: Option<Pose>,
+    pub board: Option<Pose>,
     /// The head's pose in the last frame.
     head: Option<Pose>,
-    /// The point on the panel that is pointed at.
-    hit: Option<Vec2>,
-    pointed: Option<Choice>,
+    /// The point on the panel that is pointed at, 0 to 1 from the lower left.
+    pub hit: Option<Vec2>,
+    /// The tile that is pointed at.
+    pub pointed: Option<Choice>,
     /// The time from which that tile has been pointed at.
     since_ns: i64,
     is_spent: bool,
@@ -72,16 +73,6 @@ pub(in crate::viewer) struct Menu {
 }
 
 impl Menu {
-    /// Returns the pose of the open panel, relative to the viewpoint.
-    pub fn board(&self) -> Option<Pose> {
-        self.board
-    }
-
-    /// Returns the point on the panel that is pointed at, 0 to 1 from the lower left.
-    pub fn hit(&self) -> Option<Vec2> {
-        self.hit
-    }
-
     /// Opens the menu in front of the head.
     pub fn open(&mut self) {
         self.board = Some(board_pose(self.head.unwrap_or(Pose::IDENTITY)));
@@ -102,11 +93,6 @@ impl Menu {
     /// for long enough.
     pub fn is_comparing(&self) -> bool {
         matches!(self.pointed, Some((Item::Compare, _))) && (self.is_pressed || self.is_spent)
-    }
-
-    /// Returns the tile that is pointed at.
-    pub fn pointed(&self) -> Option<Choice> {
-        self.pointed
     }
 
     /// Updates the menu with the direction of the head. Opens it if the user has looked down for long enough, and
@@ -203,19 +189,19 @@ mod tests {
         // The upper left tile.
         let at = head(15.0, 2.0);
         assert_eq!(menu.look(at, [None; 2], 0), Look::Nothing);
-        assert_eq!(menu.pointed().unwrap().0, Item::Recenter);
+        assert_eq!(menu.pointed.unwrap().0, Item::Recenter);
         assert_eq!(menu.look(at, [None; 2], 1499 * MS), Look::Nothing);
         assert!(menu.tiles.pointed.unwrap().1 > 0.9);
         assert!(matches!(menu.look(at, [None; 2], 1500 * MS), Look::Choose((Item::Recenter, _))));
         assert_eq!(menu.look(at, [None; 2], 9000 * MS), Look::Nothing);
         // Looks away and back.
         menu.look(head(60.0, 0.0), [None; 2], 9100 * MS);
-        assert_eq!((menu.pointed(), menu.hit()), (None, None));
+        assert_eq!((menu.pointed, menu.hit), (None, None));
         menu.look(at, [None; 2], 9200 * MS);
         assert!(matches!(menu.look(at, [None; 2], 10_700 * MS), Look::Choose(_)));
         // Another tile.
         menu.look(head(-15.0, 2.0), [None; 2], 11_000 * MS);
-        assert_eq!(menu.pointed().unwrap().0, Item::Method);
+        assert_eq!(menu.pointed.unwrap().0, Item::Method);
     }
 
     #[test]
@@ -226,7 +212,7 @@ mod tests {
         assert_eq!(menu.look(head(90.0, -20.0), [None; 2], 900 * MS), Look::Nothing);
         assert_eq!(menu.look(down, [None; 2], 1000 * MS), Look::Nothing);
         assert_eq!(menu.look(down, [None; 2], 2000 * MS), Look::Open);
-        let board = menu.board().unwrap();
+        let board = menu.board.unwrap();
         assert!(board.position.abs_diff_eq(Vec3::new(-2.0, 0.0, 0.0), 1e-3), "{}", board.position);
         menu.close();
         assert_eq!(menu.look(down, [None; 2], 9000 * MS), Look::Nothing);
@@ -239,7 +225,7 @@ mod tests {
         menu.open();
         let at = head(4.0, -8.0);
         menu.look(at, [None; 2], 0);
-        assert_eq!(menu.pointed().unwrap().0, Item::Compare);
+        assert_eq!(menu.pointed.unwrap().0, Item::Compare);
         menu.press(true);
         assert!(menu.is_comparing());
         menu.press(false);
@@ -264,15 +250,15 @@ mod tests {
         };
         let gaze = head(-15.0, 2.0);
         menu.look(gaze, [Some(ray), None], 0);
-        assert_eq!(menu.pointed().unwrap().0, Item::Recenter);
+        assert_eq!(menu.pointed.unwrap().0, Item::Recenter);
         assert_eq!(menu.look(gaze, [Some(ray), None], 9000 * MS), Look::Nothing);
         // The ray misses the panel: the head points again, and the time starts anew.
         let past = Pose { orientation: Quat::IDENTITY, position: Vec3::new(3.0, 0.0, 0.0) };
         assert_eq!(menu.look(gaze, [None, Some(past)], 9100 * MS), Look::Nothing);
-        assert_eq!(menu.pointed().unwrap().0, Item::Method);
+        assert_eq!(menu.pointed.unwrap().0, Item::Method);
         assert!(matches!(menu.look(gaze, [None, Some(past)], 10_600 * MS), Look::Choose((Item::Method, _))));
         // The second of two hands.
         menu.look(gaze, [Some(past), Some(ray)], 10_700 * MS);
-        assert_eq!(menu.pointed().unwrap().0, Item::Recenter);
+        assert_eq!(menu.pointed.unwrap().0, Item::Recenter);
     }
 }

@@ -29,14 +29,14 @@ impl Viewer {
             self.menu.close();
             return Ok(Action::Nothing);
         }
-        let before = self.menu.pointed();
+        let before = self.menu.pointed;
         let action = match self.menu.look(head, rays, self.now_ns) {
             Look::Nothing => {
                 let note = |choice: Option<Choice>| match choice {
                     Some((item @ (Item::Lenses | Item::Close), _)) => Some(item),
                     _ => None,
                 };
-                if note(self.menu.pointed()) != note(before) {
+                if note(self.menu.pointed) != note(before) {
                     self.write_menu();
                 }
                 Action::Nothing
@@ -49,7 +49,7 @@ impl Viewer {
     }
 
     pub(super) fn open_menu(&mut self) -> Action {
-        if self.menu.board().is_none() {
+        if self.menu.board.is_none() {
             self.menu.open();
         }
         self.write_menu();
@@ -75,7 +75,7 @@ impl Viewer {
 
     /// Chooses the tile that is pointed at, if any.
     pub(super) fn choose_pointed(&mut self) -> Result<Action, ViewerError> {
-        let Some(choice) = self.menu.pointed() else { return Ok(Action::Nothing) };
+        let Some(choice) = self.menu.pointed else { return Ok(Action::Nothing) };
         self.menu.spend();
         self.choose(choice)
     }
@@ -93,7 +93,7 @@ impl Viewer {
             Item::Compare => Action::Nothing,
             Item::Scene => {
                 let action = self.next_scene();
-                let name = self.scene.name().to_owned();
+                let name = self.scene.name.clone();
                 self.keep(&[("scene", name), ("viewpoint", "0".into())]);
                 action
             }
@@ -208,7 +208,7 @@ impl Viewer {
 
     /// Writes the menu's texts.
     pub(crate) fn write_menu(&mut self) {
-        if self.menu.board().is_none() {
+        if self.menu.board.is_none() {
             return;
         }
         let text =
@@ -217,8 +217,8 @@ impl Viewer {
         let quality = self.quality().map_or("own", |at| QUALITIES[at].0);
         let tiles = Item::ALL.map(|item| match item {
             Item::Recenter => "Recenter".into(),
-            Item::Scene => format!("Scene\n{}", self.scene.name()),
-            Item::Viewpoint => format!("Viewpoint\n{}", self.scene.viewpoint()),
+            Item::Scene => format!("Scene\n{}", self.scene.name),
+            Item::Viewpoint => format!("Viewpoint\n{}", self.scene.viewpoint),
             Item::Method => format!("< Method >\n{}", self.method().name()),
             Item::Eye => format!("Own eye\n{}", text("dominant")),
             Item::Lenses => format!("Viewer\n{}", self.viewer_name(&self.settings.viewer)[1]),
@@ -235,7 +235,7 @@ impl Viewer {
              Compare, held or looked at: both eyes are rendered.\n\
              Figures: frames a second, a frame's ms, degrees C.\n\
              {}",
-            match self.menu.pointed() {
+            match self.menu.pointed {
                 Some((Item::Lenses, _)) => "Another viewer: scan its code on the start screen.",
                 Some((Item::Close, _)) => "Others' licences: assets/NOTICES.txt in the APK.",
                 _ => "Look at a tile for 1.5 s, or tap. Hold: recenter.",
@@ -245,12 +245,12 @@ impl Viewer {
 
     /// True while the menu is open, even if it is hidden for a comparison.
     pub fn is_menu_open(&self) -> bool {
-        self.menu.board().is_some()
+        self.menu.board.is_some()
     }
 
     /// Returns the pose of the menu's panel relative to the viewpoint, while the panel is shown.
     pub fn menu_place(&self) -> Option<Pose> {
-        self.menu.board().filter(|_| !self.menu.is_comparing())
+        self.menu.board.filter(|_| !self.menu.is_comparing())
     }
 
     /// Draws the menu over both eyes, if it is shown.
@@ -259,13 +259,13 @@ impl Viewer {
         let board_pose = self.place(board);
         let Some(attached) = &mut self.attached else { return };
         attached.board.set(&self.menu.tiles);
-        attached.board.draw_into_eyes(&board_pose, self.menu.hit(), pair, eyes);
+        attached.board.draw_into_eyes(&board_pose, self.menu.hit, pair, eyes);
     }
 
     /// Fills a compositor's image of [`Board::SIZE`](yoro_lenses::Board::SIZE) with the menu.
     pub fn draw_menu_image(&mut self, to: &Destination) {
         let Some(attached) = &mut self.attached else { return };
         attached.board.set(&self.menu.tiles);
-        attached.board.draw_linear(self.menu.hit(), to);
+        attached.board.draw_linear(self.menu.hit, to);
     }
 }

@@ -12,7 +12,7 @@ use yoro_gl::{
 /// The format of depth, as in the samples of a view.
 const DEPTH: Format = Format::Depth32F;
 
-/// What is drawn over both eyes of a frame, after the rendered one is developed and the other one synthesized.
+/// What is drawn over both eyes of a frame, after the rendered one is composited and the other one synthesized.
 #[derive(Clone, Copy)]
 pub(super) struct OverlaySurfaces {
     /// The near objects, if they are left out of the synthesis.
@@ -41,7 +41,7 @@ impl OverlaySurfaces {
 /// of the samples is the eye's image: all in one pass, which reads nothing back and stores no sample.
 ///
 /// If somebody reads the eye's depth, a pixel has one sample, since samples have no depth in common.
-pub(super) struct Over {
+pub(super) struct OverlayPass {
     gl: Rc<Context>,
     samples: u32,
     /// Samples outside tiles.
@@ -50,14 +50,14 @@ pub(super) struct Over {
     tile: Option<(TileTarget, Option<Texture>)>,
     /// One sample.
     image: Option<RenderTarget>,
-    way: Way,
+    target: OverlayTarget,
     /// The place of the current eye.
     place: Destination,
 }
 
 /// Where the current eye is finished.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum OverlayTarget {
     /// In its own target: nothing is drawn over it.
     Direct,
     Image,
@@ -65,18 +65,18 @@ enum Way {
     Tile,
 }
 
-impl Over {
+impl OverlayPass {
     /// Makes it without images.
-    pub(super) fn new(renderer: &Renderer) -> Result<Over, GlError> {
-        let (gl, samples) = (&renderer.gl, renderer.samples());
+    pub(super) fn new(renderer: &Renderer) -> Result<OverlayPass, GlError> {
+        let (gl, samples) = (&renderer.gl, renderer.settings.msaa);
         let tile = (samples > 1 && gl.capabilities().tile_samples).then(|| TileTarget::new(gl, samples));
-        Ok(Over {
+        Ok(OverlayPass {
             gl: gl.clone(),
             samples,
             multisample: None,
             tile: tile.transpose()?.map(|tile| (tile, None)),
             image: None,
-            way: Way::Direct,
+            target: OverlayTarget::Direct,
             place: Destination { framebuffer: None, origin: [0, 0], size: [0, 0] },
         })
     }
@@ -102,17 +102,17 @@ impl Over {
         let (to, size) = (frame.to(eye), frame.pair.size);
         let wants_depth = frame.wants_depth(eye);
         if !over.is_any() && !wants_depth {
-            self.way = Way::Direct;
+            self.target = OverlayTarget::Direct;
             return Ok((to.color, false));
         }
         if !wants_depth && self.fit_tile(to.texture.map(|texture| (texture, size)))? {
-            self.way = Way::Tile;
+            self.target = OverlayTarget::Tile;
             let tile = self.tile.as_ref().map(|(tile, _)| tile.part(size));
             return Ok((tile.unwrap_or(to.color), true));
         }
         // OpenGL ES averages between equal rectangles only.
         if !wants_depth && self.samples > 1 && to.color.origin == [0, 0] {
-            self.way = Way::Samples;
+            self.target = OverlayTarget::Samples;
             let samples = match &mut self.multisample {
                 Some(samples) => samples,
                 slot => {
@@ -124,7 +124,7 @@ impl Over {
             samples.resize(size)?;
             return Ok((samples.part(size), true));
         }
-        self.way = Way::Image;
+        self.target = OverlayTarget::Image;
         let image = match &mut self.image {
             Some(image) => image,
             slot => slot.insert(RenderTarget::new(
@@ -152,28 +152,28 @@ impl Over {
         Ok(unsafe { tile.fit(&[color], depth) }.is_ok())
     }
 
-    /// Draws over the eye that was written to the place that [`Over::begin`] returned, and completes its target.
+    /// Draws over the eye that was written to the place that [`OverlayPass::begin`] returned, and completes its target.
     pub(super) fn finish(&self, frame: &Frame, eye: Eye, over: &OverlaySurfaces) {
-        if self.way == Way::Direct {
+        if self.target == OverlayTarget::Direct {
             return;
         }
         let view = frame.pair.view(eye);
-        let samples = if self.way == Way::Image { 1 } else { self.samples };
+        let samples = if self.target == OverlayTarget::Image { 1 } else { self.samples };
         if over.is_any() {
             let place = &self.place;
             self.gl.bind_framebuffer(place.framebuffer, place.origin, place.size);
             frame.renderer.draw_over(&frame.scene, &view, over.near, samples);
         }
-        match (self.way, &self.multisample, &self.tile, &self.image) {
-            (Way::Samples, Some(samples), ..) => {
+        match (self.target, &self.multisample, &self.tile, &self.image) {
+            (OverlayTarget::Samples, Some(samples), ..) => {
                 let pass = self.gl.pass("resolve").in_tile(samples.images());
                 pass.write([frame.to(eye).color.image(Format::Rgba8)]).run(|| {
                     samples.average(0, &frame.to(eye).color);
                     samples.discard(true, true);
                 });
             }
-            (Way::Tile, _, Some((tile, _)), _) => tile.discard_depth(),
-            (Way::Image, .., Some(image)) => {
+            (OverlayTarget::Tile, _, Some((tile, _)), _) => tile.discard_depth(),
+            (OverlayTarget::Image, .., Some(image)) => {
                 let to = &frame.to(eye).color;
                 let pass = self.gl.pass("copy").read("copied", image.color(0));
                 pass.write([to.image(Format::Rgba8)]).run(|| image.copy_color([0, 0], to));
