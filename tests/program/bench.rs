@@ -162,7 +162,8 @@ fn sweeps_have_their_points_and_baselines() {
 fn the_other_experiments_are_measured_and_reported() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    let line = "bench reprojection half-rate foveation --quick --scene talk --size 64x64 --rounds 1 --out r.jsonl";
+    let line =
+        "bench reprojection half-rate foveation --quick --scene talk --size 64x64 --rounds 1 --out r.jsonl";
     succeed(at, line);
     let records = records(&at.join("r.jsonl"));
     let who = |label: &str| -> Vec<&str> {

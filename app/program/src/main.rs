@@ -89,7 +89,8 @@ fn inputs(command: &clap::Command, matches: &clap::ArgMatches) -> Vec<PathBuf> {
             command.find_subcommand(name).map_or_else(Vec::new, |command| inputs(command, matches))
         }
         None => {
-            let given = command.get_positionals().filter_map(|input| matches.get_raw(input.get_id().as_str()));
+            let given =
+                command.get_positionals().filter_map(|input| matches.get_raw(input.get_id().as_str()));
             given.flatten().map(PathBuf::from).collect()
         }
     }

@@ -4,7 +4,7 @@ mod golden;
 mod methods;
 mod multiview;
 mod objects;
-mod refusals;
 mod record;
+mod refusals;
 mod shader_cost;
 mod shaders;

@@ -6,9 +6,7 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, 
 use yoro_assets::ShadingStyle;
 use yoro_context::Headless;
 use yoro_gl::Context;
-use yoro_render::stereo::{
-    ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions, StereoSession,
-};
+use yoro_render::stereo::{ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions, StereoSession};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_tests::{backends, is_tested, scene};
 

@@ -112,7 +112,8 @@ static INPUTS: OnceLock<Vec<PathBuf>> = OnceLock::new();
 
 /// Names the inputs of this process, which [`write_with`] refuses to replace. Only the first call counts.
 pub fn protect(inputs: impl IntoIterator<Item = PathBuf>) {
-    let files = inputs.into_iter().filter(|input| input.is_file()).filter_map(|input| input.canonicalize().ok());
+    let files =
+        inputs.into_iter().filter(|input| input.is_file()).filter_map(|input| input.canonicalize().ok());
     // A second call changes nothing.
     let _ = INPUTS.set(files.collect());
 }

@@ -243,7 +243,11 @@ mod tests {
     }
 
     fn camera(pose: EyePose) -> EyeCamera {
-        EyeCamera { pose, tangents: TANGENTS, inverse_distances: NEAR_FAR.map(|metres| 1.0 / f64::from(metres)) }
+        EyeCamera {
+            pose,
+            tangents: TANGENTS,
+            inverse_distances: NEAR_FAR.map(|metres| 1.0 / f64::from(metres)),
+        }
     }
 
     /// The nearest surface along a ray.

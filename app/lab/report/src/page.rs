@@ -232,34 +232,101 @@ mod tests {
 
     #[test]
     fn temporary_page() {
-        let mut section = Section::new("Frame time", "A whole stereo frame by every method, on scenes that correspond to the paper's eight.");
-        let mut plot = Plot::rows("Frame time over two full renders", Axis::new("frame time / conventional").baseline(1.0)).caption("Less is better; the line is conventional rendering.");
-        let mut change = Plot::rows("power against conventional", Axis::new("power against conventional, %").baseline(0.0)).caption("Bars: 95 % intervals. Hollow: the paper's.");
-        let mut curves = Plot::curves("Frame time here", Axis::new("triangles, millions").from_zero(), Axis::new("frame time, ms").from_zero()).caption("Medians on this machine.");
-        let mut traces = Plot::traces("street: power over time", Axis::new("seconds since the run began"), Axis::new("power, mW").from_zero());
+        let mut section = Section::new(
+            "Frame time",
+            "A whole stereo frame by every method, on scenes that correspond to the paper's eight.",
+        );
+        let mut plot = Plot::rows(
+            "Frame time over two full renders",
+            Axis::new("frame time / conventional").baseline(1.0),
+        )
+        .caption("Less is better; the line is conventional rendering.");
+        let mut change = Plot::rows(
+            "power against conventional",
+            Axis::new("power against conventional, %").baseline(0.0),
+        )
+        .caption("Bars: 95 % intervals. Hollow: the paper's.");
+        let mut curves = Plot::curves(
+            "Frame time here",
+            Axis::new("triangles, millions").from_zero(),
+            Axis::new("frame time, ms").from_zero(),
+        )
+        .caption("Medians on this machine.");
+        let mut traces = Plot::traces(
+            "street: power over time",
+            Axis::new("seconds since the run began"),
+            Axis::new("power, mW").from_zero(),
+        );
         let mut log = Plot::rows("Time", Axis::new("patching time, ms").logarithmic());
         let mut table = Table::new("All figures", &["<scene", "<method", "PSNR, dB", "SSIM", "the paper's"]);
-        for (s, scene) in ["street", "scifi-city", "atrium", "conference", "a name that is too long"].iter().enumerate() {
+        for (s, scene) in
+            ["street", "scifi-city", "atrium", "conference", "a name that is too long"].iter().enumerate()
+        {
             for (m, method) in ["yoro-gather", "yoro-paper", "hybrid", "mono"].iter().enumerate() {
                 let v = 0.6 + 0.05 * s as f64 + 0.1 * m as f64;
                 plot.mark(scene, Entry::ours(*method), v);
                 log.mark(scene, Entry::ours(*method), 10f64.powf(v * 5.0 - 2.0));
-                if m < 2 { change.mark_interval(scene, Entry::ours(*method), -30.0 * v, Some(crate::Interval { low: -30.0 * v - 3.0, high: -30.0 * v + 3.0 })); }
-                table.push_grouped(vec![Cell::plain(*scene), Cell::plain(*method), Cell::ours(Some(format!("{:.2}", 30.0 + v))), Cell::base(Some(format!("{v:.4}"))), Cell::paper(Some("31.99"))], m == 0);
+                if m < 2 {
+                    change.mark_interval(
+                        scene,
+                        Entry::ours(*method),
+                        -30.0 * v,
+                        Some(crate::Interval { low: -30.0 * v - 3.0, high: -30.0 * v + 3.0 }),
+                    );
+                }
+                table.push_grouped(
+                    vec![
+                        Cell::plain(*scene),
+                        Cell::plain(*method),
+                        Cell::ours(Some(format!("{:.2}", 30.0 + v))),
+                        Cell::base(Some(format!("{v:.4}"))),
+                        Cell::paper(Some("31.99")),
+                    ],
+                    m == 0,
+                );
             }
             plot.mark(scene, Entry::papers("yoro-paper", "the paper's YORO"), 0.45 + 0.02 * s as f64);
             change.mark(scene, Entry::papers("yoro-paper", "the paper's YORO"), -26.0 - s as f64);
         }
         table.push_reason(vec![Cell::plain("multiview")], "no GL_OVR_multiview2");
-        for (m, method) in ["conventional", "yoro-gather", "yoro-paper", "instanced", "multiview"].iter().enumerate() {
-            curves.curve(Entry::ours(*method), (1..8).map(|i| (f64::from(i) * 1.6, f64::from(i) * (20.0 - 2.0 * m as f64) + 5.0)));
-            traces.curve(Entry::ours(*method), (0..200).map(|i| (f64::from(i), 400.0 + 30.0 * m as f64 + 20.0 * (f64::from(i) * 0.7 + m as f64).sin())));
+        for (m, method) in
+            ["conventional", "yoro-gather", "yoro-paper", "instanced", "multiview"].iter().enumerate()
+        {
+            curves.curve(
+                Entry::ours(*method),
+                (1..8).map(|i| (f64::from(i) * 1.6, f64::from(i) * (20.0 - 2.0 * m as f64) + 5.0)),
+            );
+            traces.curve(
+                Entry::ours(*method),
+                (0..200).map(|i| {
+                    (f64::from(i), 400.0 + 30.0 * m as f64 + 20.0 * (f64::from(i) * 0.7 + m as f64).sin())
+                }),
+            );
         }
-        curves.curve(Entry::papers("hybrid", "the paper's Fink et al."), [(1.5, 25.0), (6.0, 75.0), (13.0, 178.0)]);
+        curves.curve(
+            Entry::papers("hybrid", "the paper's Fink et al."),
+            [(1.5, 25.0), (6.0, 75.0), (13.0, 178.0)],
+        );
         let svg = curves.to_svg().unwrap();
-        for plot in [plot, change, curves, traces, log] { section.plot(plot); }
+        for plot in [plot, change, curves, traces, log] {
+            section.plot(plot);
+        }
         section.table(table);
-        section.pictures(Pictures { title: "street".into(), note: "1.24 M triangles".into(), pictures: (0..5).map(|k| Picture { label: ["really rendered", "gather", "paper", "same image", "error: gather"][k].into(), caption: "The left eye, really rendered: the reference.".into(), image: RgbImage::from_fn(512, 512, |x, y| image::Rgb([(x / 2) as u8, (y / 2) as u8, (k * 50) as u8])), is_map: k == 4 }).collect(), other_eye: Some(OtherEye { picture: 3, is_left: false }) });
+        section.pictures(Pictures {
+            title: "street".into(),
+            note: "1.24 M triangles".into(),
+            pictures: (0..5)
+                .map(|k| Picture {
+                    label: ["really rendered", "gather", "paper", "same image", "error: gather"][k].into(),
+                    caption: "The left eye, really rendered: the reference.".into(),
+                    image: RgbImage::from_fn(512, 512, |x, y| {
+                        image::Rgb([(x / 2) as u8, (y / 2) as u8, (k * 50) as u8])
+                    }),
+                    is_map: k == 4,
+                })
+                .collect(),
+            other_eye: Some(OtherEye { picture: 3, is_left: false }),
+        });
         let mut measured = Section::new("How it was measured", "PSNR in dB over red, green and blue.");
         measured.text(Text::quiet("`yoro bench scenes` on a CPU, 2 cores."));
         let report = Report { title: "Methods side by side".into(), summary: vec![Text::warning("Simulated: the figures come from devices that do not exist."), "**gather**: the synthesized eye has PSNR **31.91 dB**, SSIM **.9675**; a stereo frame takes **0.67** of the time of two full renders.".into()], sections: vec![section, measured] };

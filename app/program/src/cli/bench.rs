@@ -16,8 +16,8 @@ use yoro::eyes::{Eye, EyeOptions};
 use yoro_assets::load::sidecar_file;
 use yoro_bench::bench::record::{Header, PassClock, VERSION};
 use yoro_bench::bench::{
-    self, Bounds, Choices, Contender, EXPERIMENTS, Experiment, Inputs, Job, LazyObject, Object, Runner, Writer,
-    process,
+    self, Bounds, Choices, Contender, EXPERIMENTS, Experiment, Inputs, Job, LazyObject, Object, Runner,
+    Writer, process,
 };
 use yoro_bench::inpaint::PatcherOptions;
 use yoro_files::interrupt::Interrupted;

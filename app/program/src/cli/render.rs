@@ -182,8 +182,9 @@ impl Subcommand for RenderArgs {
         }
         let mut session = StereoSession::new(gl, self.method.into(), &settings, &options)?;
         let measured = self.measure || self.outputs.iter().any(|o| o.needs_truth());
-        let mut truth =
-            measured.then(|| StereoSession::new(gl, Method::Conventional.into(), &settings, &options)).transpose()?;
+        let mut truth = measured
+            .then(|| StereoSession::new(gl, Method::Conventional.into(), &settings, &options))
+            .transpose()?;
         session.prepare(&mut prepared)?;
         let mut frame = StereoFrame::new(gl, self.eyes.size)?;
         let mut reports = Vec::new();

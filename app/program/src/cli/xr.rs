@@ -80,7 +80,11 @@ impl XrArgs {
                     file.display()
                 );
                 let is_manifest = files::has_extension(file, &["json"]);
-                vec![if is_manifest { RuntimeSource::Manifest(file.clone()) } else { RuntimeSource::Loader(file.clone()) }]
+                vec![if is_manifest {
+                    RuntimeSource::Manifest(file.clone())
+                } else {
+                    RuntimeSource::Loader(file.clone())
+                }]
             }
         };
         // Where it was looked for is for those who have installed one.

@@ -109,7 +109,7 @@ impl Estimator {
         let settings = RenderSettings { bloom, ..render_settings(&Default::default(), None) };
         let recorder = Recorder::new(gl);
         let scene = PreparedScene::new(gl, yoro_scenes::load(name, DEFAULT_SEED, None)?, &settings)?;
-        let counter = Counter::new(gl, scene.renderer.nearest_depth())?;
+        let counter = Counter::new(gl, scene.renderer.depth_resolve)?;
         Ok(Estimator { gl: gl.clone(), recorder, scene, name, settings, counter, model: FrameModel::new()? })
     }
 
@@ -192,7 +192,7 @@ impl Estimator {
         passes: &[RecordedPass],
         counted: &[(Counted, f64)],
     ) -> anyhow::Result<()> {
-        let depth = self.scene.renderer.nearest_depth();
+        let depth = self.scene.renderer.depth_resolve;
         for gpu in GPUS {
             for (level, share) in counted {
                 let Executed { slots, fetches, bytes } = level.executed(&gpu, depth, March::of(passes))?;

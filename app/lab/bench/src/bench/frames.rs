@@ -43,7 +43,8 @@ pub(super) fn measure(
         runner.announce(job, number);
         let mut round = field.start_round(job, number);
         let is_compared = quality && number == 0;
-        let images = field.render(runner, scene, &views, &mut round, RoundParts { number, cost, is_compared })?;
+        let images =
+            field.render(runner, scene, &views, &mut round, RoundParts { number, cost, is_compared })?;
         if is_compared {
             field.compare(runner, scene, &views, &images, &mut round)?;
             for (entry, images) in field.entries.iter().zip(&images).filter(|_| pictures) {

@@ -89,7 +89,11 @@ pub(super) const QUICK_SCENES: [&str; 1] = ["prototype"];
 impl Choices {
     /// Returns the user's scenes or, if there are none, these.
     pub(super) fn scenes<'a>(&self, own: impl IntoIterator<Item = &'a str>) -> Vec<String> {
-        if self.scenes.is_empty() { own.into_iter().map(str::to_owned).collect() } else { self.scenes.clone() }
+        if self.scenes.is_empty() {
+            own.into_iter().map(str::to_owned).collect()
+        } else {
+            self.scenes.clone()
+        }
     }
 
     /// Returns the scenes of a suite on all built-in scenes.

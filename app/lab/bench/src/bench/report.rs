@@ -78,7 +78,9 @@ impl BenchReport {
         let mut sections = Vec::new();
         for experiment in EXPERIMENTS {
             for suite in self.suites.iter().filter(|suite| suite.name == experiment.name()) {
-                sections.extend(experiment.sections(suite).into_iter().map(|section| self.finished(section, suite)));
+                sections.extend(
+                    experiment.sections(suite).into_iter().map(|section| self.finished(section, suite)),
+                );
             }
         }
         let is_known = |suite: &&SuiteData| EXPERIMENTS.iter().any(|known| known.name() == suite.name);
@@ -147,11 +149,7 @@ impl BenchReport {
             let machine = &header.machine;
             let parameters: Vec<(&str, &str)> =
                 header.parameters.iter().map(|p| (p.name.as_str(), p.value.as_str())).collect();
-            let machine = [
-                ("GL", machine.gl_version.as_str()),
-                ("OS", &machine.os),
-                ("yoro", &machine.yoro),
-            ];
+            let machine = [("GL", machine.gl_version.as_str()), ("OS", &machine.os), ("yoro", &machine.yoro)];
             section.text(Text::quiet(format!("`{name}`: {}; {}.", list(&machine), list(&parameters))));
         }
         section
@@ -195,9 +193,8 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
 
 /// Returns the pictures of a viewpoint: the real render, each method's, the same image, and maps of the errors.
 fn pictures_of(viewpoint: &Viewpoint) -> Pictures {
-    let caption = |quality: &yoro_metrics::Quality| {
-        format!("PSNR {}, SSIM {:.4}", quality.psnr, quality.ssim_gaussian)
-    };
+    let caption =
+        |quality: &yoro_metrics::Quality| format!("PSNR {}, SSIM {:.4}", quality.psnr, quality.ssim_gaussian);
     let picture = |label: String, caption: String, image: &image::RgbImage, is_map: bool| Picture {
         label,
         caption,

@@ -274,10 +274,18 @@ fn without_shard(command: &str) -> String {
     words.join(" ")
 }
 
-fn entry<'a>(suites: &'a mut Vec<SuiteData>, header: &Header, conditions: &Conditions) -> &'a mut SettingData {
+fn entry<'a>(
+    suites: &'a mut Vec<SuiteData>,
+    header: &Header,
+    conditions: &Conditions,
+) -> &'a mut SettingData {
     let found = suites.iter().position(|s| s.name == conditions.suite && same_conditions(&s.header, header));
     let suite = found.unwrap_or_else(|| {
-        suites.push(SuiteData { name: conditions.suite.clone(), header: header.clone(), settings: Vec::new() });
+        suites.push(SuiteData {
+            name: conditions.suite.clone(),
+            header: header.clone(),
+            settings: Vec::new(),
+        });
         suites.len() - 1
     });
     let command = &mut suites[suite].header.machine.command;

@@ -145,7 +145,8 @@ impl<'a> Runner<'a> {
 
     /// Shows what is measured now.
     pub(super) fn announce(&self, job: &Job, round: u32) {
-        let round = if job.rounds > 1 { format!(": round {} of {}", round + 1, job.rounds) } else { String::new() };
+        let round =
+            if job.rounds > 1 { format!(": round {} of {}", round + 1, job.rounds) } else { String::new() };
         self.bar.set_message(format!("{}{round}", job.conditions));
     }
 
@@ -194,7 +195,8 @@ impl<'a> Runner<'a> {
     pub(super) fn leave_out(&mut self, job: &Job, reason: String) -> anyhow::Result<()> {
         log::warn!("{} is left out: {reason}", job.conditions);
         let mut round = Round::new(job, 0);
-        round.records = job.contenders.iter().map(|contender| unsupported(job, *contender, &reason)).collect();
+        round.records =
+            job.contenders.iter().map(|contender| unsupported(job, *contender, &reason)).collect();
         self.bar.inc(job.experiment.steps(job));
         self.finish(round)
     }

@@ -19,7 +19,11 @@ pub(super) struct QualityPlot {
 pub(super) const QUALITY_PLOTS: [QualityPlot; 3] = [
     QualityPlot { metric: metric::PSNR, axis: "PSNR, dB", caption: "More is better." },
     QualityPlot { metric: metric::SSIM, axis: "SSIM, gaussian 11x11", caption: "More is better." },
-    QualityPlot { metric: metric::FLIP, axis: "FLIP, 0 to 1", caption: "Less is better. The paper has none." },
+    QualityPlot {
+        metric: metric::FLIP,
+        axis: "FLIP, 0 to 1",
+        caption: "Less is better. The paper has none.",
+    },
 ];
 
 /// A column of a table: the heading, the metric, and its decimals.
@@ -140,10 +144,7 @@ pub(super) fn push_refusals(table: &mut Table, suite: &SuiteData) {
 }
 
 /// Returns a table with the frame times of each contender in each setting.
-pub(super) fn time_details(
-    suite: &SuiteData,
-    papers: impl Fn(&SettingData, &str) -> Option<f64>,
-) -> Table {
+pub(super) fn time_details(suite: &SuiteData, papers: impl Fn(&SettingData, &str) -> Option<f64>) -> Table {
     let columns = [
         "<scene",
         "<method",
@@ -203,9 +204,8 @@ pub(super) fn means_table(
         return table;
     }
     for name in contenders {
-        let value = |(_, metric, decimals): &&MetricColumn| {
-            cell(name, fixed(suite.mean(name, metric), *decimals))
-        };
+        let value =
+            |(_, metric, decimals): &&MetricColumn| cell(name, fixed(suite.mean(name, metric), *decimals));
         table.push([Cell::plain(*name)].into_iter().chain(measured.iter().map(value)).collect());
     }
     for name in suite.contenders() {
@@ -411,9 +411,10 @@ impl Labels {
         }
         push_refusals(&mut table, suite);
         if self.papers.is_some() {
-            let column = suite.labels().into_iter().map(|label| {
-                paper_of(label).map(|[ssim, psnr]| format!("{psnr:.1} / {ssim:.3}"))
-            });
+            let column = suite
+                .labels()
+                .into_iter()
+                .map(|label| paper_of(label).map(|[ssim, psnr]| format!("{psnr:.1} / {ssim:.3}")));
             add_papers_column(&mut table, "the paper's YORO", column.collect());
         }
         table.note = format!("Scenes: {}.", suite.scenes().join(", "));

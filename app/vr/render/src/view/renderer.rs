@@ -35,8 +35,8 @@ pub struct Renderer {
     pub(super) shadow: Option<ShadowMap>,
     /// True if the style has outlines, which compare samples with their neighbours.
     pub(super) ink: bool,
-    /// How the nearest depth of views is had.
-    pub(crate) depth_resolve: DepthResolve,
+    /// How the samples of a pixel become one depth on this driver.
+    pub depth_resolve: DepthResolve,
     /// The defines of `include/shade.glsl`.
     shading: Vec<(&'static str, String)>,
     pub(super) geometry: Vec<GeometryPass>,

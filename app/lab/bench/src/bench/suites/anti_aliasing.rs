@@ -1,17 +1,17 @@
 //! Cost and quality by samples per pixel
 
-use yoro_render::MSAA;
-use yoro_render::stereo::Pipeline;
-use super::super::results::SuiteData;
-use super::super::tables::Labels;
-use yoro_report::Section;
+use super::super::Experiment;
 use super::super::contender::Contender;
 use super::super::frames::{self, FrameMeasures};
 use super::super::job::{Choices, Job};
+use super::super::results::SuiteData;
 use super::super::runner::Runner;
 use super::super::scenes::LazyObject;
-use super::super::Experiment;
+use super::super::tables::Labels;
+use yoro_render::MSAA;
 use yoro_render::PreparedScene;
+use yoro_render::stereo::Pipeline;
+use yoro_report::Section;
 
 /// Cost and quality by samples per pixel.
 pub struct AntiAliasing;

@@ -1,19 +1,19 @@
 //! Frame time by number of triangles
 
+use super::super::Experiment;
+use super::super::contender::Contender;
+use super::super::frames::{self, FrameMeasures};
+use super::super::job::{Choices, Job, Source};
 use super::super::record::metric;
 use super::super::results::{CONVENTIONAL, SuiteData};
+use super::super::runner::Runner;
+use super::super::scenes::LazyObject;
 use super::super::tables::{Sweep, cell, milliseconds, papers_entry, push_refusals};
+use yoro_render::PreparedScene;
 use yoro_report::paper::PAPER;
 use yoro_report::stats::{geometric_mean, line_through, mean};
 use yoro_report::text::{fixed, short_count};
 use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
-use super::super::contender::Contender;
-use super::super::frames::{self, FrameMeasures};
-use super::super::job::{Choices, Job, Source};
-use super::super::runner::Runner;
-use super::super::scenes::LazyObject;
-use super::super::Experiment;
-use yoro_render::PreparedScene;
 
 /// The number of sizes, as in the paper, and in the short form.
 const SIZES: [usize; 2] = [9, 5];

@@ -2,22 +2,22 @@
 
 use image::RgbImage;
 
-use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
-use super::super::tables::{MetricColumn, mark_scenes, means_table, scene_table};
-use yoro_report::text::fixed;
-use yoro_report::{Axis, Cell, Plot, Section};
 use super::super::Experiment;
 use super::super::contender::Contender;
 use super::super::frames::Field;
 use super::super::holes::HoleFinder;
 use super::super::job::{Choices, Job};
 use super::super::record::metric;
+use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
 use super::super::runner::{Runner, eye_image};
 use super::super::scenes::LazyObject;
+use super::super::tables::{MetricColumn, mark_scenes, means_table, scene_table};
 use super::super::views;
 use yoro_files::interrupt;
 use yoro_metrics::FlickerMeter;
 use yoro_render::PreparedScene;
+use yoro_report::text::fixed;
+use yoro_report::{Axis, Cell, Plot, Section};
 
 /// The number of frames, and in the short form.
 const FRAMES: [usize; 2] = [12, 4];
@@ -95,8 +95,7 @@ impl Experiment for Flicker {
             ("elsewhere", metric::FLICKER_REST, 3),
         ];
         let contenders = suite.measured(metric::FLICKER);
-        let mut table =
-            means_table(suite, "Flicker, of 255, means over the scenes", &contenders, &COLUMNS);
+        let mut table = means_table(suite, "Flicker, of 255, means over the scenes", &contenders, &COLUMNS);
         let changes = metric::CHANGES.map(|name| suite.mean(CONVENTIONAL, name));
         if changes.iter().any(Option::is_some) {
             let mut cells = vec![Cell::plain("the scene's own change")];

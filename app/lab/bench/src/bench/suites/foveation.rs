@@ -6,17 +6,14 @@ use std::time::Instant;
 use glam::Vec3;
 use image::RgbImage;
 
-use super::super::results::{CONVENTIONAL, MONO, SettingData, SuiteData};
-use super::super::tables::{cell, table_of};
-use yoro_report::stats::{geometric_mean, mean};
-use yoro_report::text::fixed;
-use yoro_report::{Cell, Section, Table};
 use super::super::Experiment;
 use super::super::job::{Choices, Job, QUICK_SCENES};
 use super::super::record::{Measurement, metric};
+use super::super::results::{CONVENTIONAL, MONO, SettingData, SuiteData};
 use super::super::runner::{Round, Runner, eye_image, milliseconds};
 use super::super::scenes::LazyObject;
 use super::super::subject::Subject;
+use super::super::tables::{cell, table_of};
 use super::super::views;
 use yoro::eyes::{Composition, EyePair, EyesError, Foveation, FoveationLevel};
 use yoro_files::interrupt;
@@ -24,6 +21,9 @@ use yoro_gl::{Context, GlError};
 use yoro_metrics::{FlickerMeter, SsimWindow, psnr_where, ssim_where};
 use yoro_render::stereo::{Method, StereoError, StereoFrame};
 use yoro_render::{DepthReader, PreparedScene, Selection, ViewTargets};
+use yoro_report::stats::{geometric_mean, mean};
+use yoro_report::text::fixed;
+use yoro_report::{Cell, Section, Table};
 use yoro_scenes::BUILTINS;
 
 /// The vertical fields of view in degrees.

@@ -18,9 +18,7 @@ use super::foveation::DEGREES;
 use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, Pose, View};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
-use yoro_metrics::{
-    Channels, EyeCamera, EyePose, SsimWindow, SubmittedEye, psnr, psnr_where, ssim,
-};
+use yoro_metrics::{Channels, EyeCamera, EyePose, SsimWindow, SubmittedEye, psnr, psnr_where, ssim};
 use yoro_render::stereo::{EyeTarget, Method, MotionTarget, StereoFrame};
 use yoro_render::{DepthImage, DepthReader, PreparedScene};
 
@@ -80,16 +78,21 @@ impl Experiment for HalfRate {
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {
         let scenes = if choices.quick { &SCENES[..1] } else { &SCENES };
-        Ok(choices.sweep(self, choices.scenes(scenes.iter().copied()), CASES, |job, Case { motion, level }| {
-            job.conditions.label = Some(match level {
-                FoveationLevel::Off => motion.name().to_owned(),
-                level => {
-                    let [_, degrees] = DEGREES;
-                    job.eyes.fov_y = degrees.to_radians();
-                    format!("{}, foveation {}, {degrees} degrees", motion.name(), level.name())
-                }
-            });
-        }))
+        Ok(choices.sweep(
+            self,
+            choices.scenes(scenes.iter().copied()),
+            CASES,
+            |job, Case { motion, level }| {
+                job.conditions.label = Some(match level {
+                    FoveationLevel::Off => motion.name().to_owned(),
+                    level => {
+                        let [_, degrees] = DEGREES;
+                        job.eyes.fov_y = degrees.to_radians();
+                        format!("{}, foveation {}, {degrees} degrees", motion.name(), level.name())
+                    }
+                });
+            },
+        ))
     }
 
     fn steps(&self, job: &Job) -> u64 {

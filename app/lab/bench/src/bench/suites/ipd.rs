@@ -1,16 +1,16 @@
 //! Quality by the distance between the eyes
 
-use super::super::results::SuiteData;
-use super::super::tables::Sweep;
-use yoro_report::paper::PAPER;
-use yoro_report::{Axis, Section};
+use super::super::Experiment;
 use super::super::contender::Contender;
 use super::super::frames::{self, FrameMeasures};
 use super::super::job::{Choices, Job};
+use super::super::results::SuiteData;
 use super::super::runner::Runner;
 use super::super::scenes::LazyObject;
-use super::super::Experiment;
+use super::super::tables::Sweep;
 use yoro_render::PreparedScene;
+use yoro_report::paper::PAPER;
+use yoro_report::{Axis, Section};
 
 /// Quality by the distance between the eyes.
 pub struct Ipd;

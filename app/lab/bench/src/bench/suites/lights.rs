@@ -1,18 +1,18 @@
 //! Frame time with few lights
 
-use super::super::record::metric;
-use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
-use super::super::tables::{PapersColumn, mark_scenes, papers_entry, scene_table, time_details};
-use yoro_report::paper::{self, PAPER};
-use yoro_report::text::fixed;
-use yoro_report::{Axis, Entry, Plot, Section};
+use super::super::Experiment;
 use super::super::contender::Contender;
 use super::super::frames::{self, FrameMeasures};
 use super::super::job::{Choices, Job};
+use super::super::record::metric;
+use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
 use super::super::runner::Runner;
 use super::super::scenes::LazyObject;
-use super::super::Experiment;
+use super::super::tables::{PapersColumn, mark_scenes, papers_entry, scene_table, time_details};
 use yoro_render::PreparedScene;
+use yoro_report::paper::{self, PAPER};
+use yoro_report::text::fixed;
+use yoro_report::{Axis, Entry, Plot, Section};
 
 /// The number of lights: the paper has fewer than five.
 const FEW_LIGHTS: usize = 4;
@@ -50,8 +50,11 @@ impl Experiment for Lights {
              over scenes and devices only.",
         );
         let cost = |setting: &SettingData, name: &str| setting.cost(name).map(|cost| cost.median);
-        let papers: Vec<(&str, f64)> =
-            PAPER.few_lights.iter().map(|(name, fps)| (name.as_str(), PAPER.few_lights[CONVENTIONAL] / fps)).collect();
+        let papers: Vec<(&str, f64)> = PAPER
+            .few_lights
+            .iter()
+            .map(|(name, fps)| (name.as_str(), PAPER.few_lights[CONVENTIONAL] / fps))
+            .collect();
         let others = suite.compared(metric::FRAME_MS);
         let title = "Frame time over two full renders";
         let plot = Plot::rows(title, Axis::new("frame time / conventional").baseline(1.0))

@@ -2,24 +2,24 @@
 
 use anyhow::ensure;
 
-use super::super::results::SuiteData;
-use super::super::tables::{cell, metric_table, milliseconds as ms_text, push_refusals};
-use yoro_report::paper::PAPER;
-use yoro_report::stats::mean;
-use yoro_report::text::fixed;
-use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
 use super::super::Experiment;
 use super::super::contender::Contender;
 use super::super::frames::picture_name;
 use super::super::job::{Choices, Job};
 use super::super::record::{Record, metric};
+use super::super::results::SuiteData;
 use super::super::runner::{Round, Runner, left_out, milliseconds};
 use super::super::scenes::LazyObject;
+use super::super::tables::{cell, metric_table, milliseconds as ms_text, push_refusals};
 use crate::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use crate::inpaint::{self, Patcher};
 use yoro_files::interrupt;
 use yoro_metrics::Comparison;
 use yoro_render::PreparedScene;
+use yoro_report::paper::PAPER;
+use yoro_report::stats::mean;
+use yoro_report::text::fixed;
+use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
 
 /// Patchers on the same reprojected images.
 pub struct Patchers;

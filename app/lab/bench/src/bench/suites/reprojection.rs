@@ -101,7 +101,9 @@ impl Experiment for Reprojection {
                 TargetPose::Canted => reprojector.canted(scene, &canted(&views.pairs[i]))?,
             };
             if i == 0 {
-                for (name, image) in images.iter().map(|(name, image)| (*name, image)).chain([("truth", &truth)]) {
+                for (name, image) in
+                    images.iter().map(|(name, image)| (*name, image)).chain([("truth", &truth)])
+                {
                     runner.save_picture(job, name, image)?;
                 }
             }
@@ -170,12 +172,7 @@ impl Reprojector {
     }
 
     /// Shows the dominant eye of one frame at its pose in a later frame.
-    fn late(
-        &mut self,
-        prepared: &PreparedScene,
-        then: &EyePair,
-        now: &EyePair,
-    ) -> anyhow::Result<Shown> {
+    fn late(&mut self, prepared: &PreparedScene, then: &EyePair, now: &EyePair) -> anyhow::Result<Shown> {
         let [old, target] = [then, now].map(|pair| pair.view(pair.dominant));
         let motion = HeadMotion {
             rotation: old.pose.orientation.angle_between(target.pose.orientation),

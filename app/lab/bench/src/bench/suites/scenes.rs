@@ -1,22 +1,22 @@
 //! Frame time, overhead and quality on the eight scenes
 
+use super::super::Experiment;
+use super::super::contender::Contender;
+use super::super::frames::{self, FrameMeasures};
+use super::super::job::{Choices, Job};
 use super::super::record::{PassClock, metric};
 use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
+use super::super::runner::Runner;
+use super::super::scenes::LazyObject;
 use super::super::tables::{
-    MetricColumn, PapersColumn, QUALITY_PLOTS, QualityPlot, cell, mark_scenes, means_table, metric_table, milliseconds,
-    paper_scene, papers_entry, psnr_ssim, quality_of, scene_table, table_of, time_details,
+    MetricColumn, PapersColumn, QUALITY_PLOTS, QualityPlot, cell, mark_scenes, means_table, metric_table,
+    milliseconds, paper_scene, papers_entry, psnr_ssim, quality_of, scene_table, table_of, time_details,
 };
+use yoro_render::PreparedScene;
 use yoro_report::paper::{PAPER, SYSTEMS};
 use yoro_report::stats::{mean, unique};
 use yoro_report::text::fixed;
 use yoro_report::{Axis, Cell, Plot, Section, Table};
-use super::super::contender::Contender;
-use super::super::frames::{self, FrameMeasures};
-use super::super::job::{Choices, Job};
-use super::super::runner::Runner;
-use super::super::scenes::LazyObject;
-use super::super::Experiment;
-use yoro_render::PreparedScene;
 
 /// Frame time, overhead and quality on the eight scenes.
 pub struct Scenes;
@@ -225,7 +225,8 @@ fn pass_table(suite: &SuiteData) -> Table {
     let of = |name: &str, pass: &str| mean(suite.values(name, |measured| measured.median(pass)));
     let has_passes = |name: &&str| passes.iter().any(|pass| of(name, pass).is_some());
     let contenders: Vec<&str> = suite.contenders().into_iter().filter(has_passes).collect();
-    let mut table = table_of("Time of each pass, means over the scenes of the medians", &["<pass, ms"], &contenders);
+    let mut table =
+        table_of("Time of each pass, means over the scenes of the medians", &["<pass, ms"], &contenders);
     for pass in &passes {
         let cells = contenders.iter().map(|name| cell(name, fixed(of(name, pass), 2)));
         let name = pass.trim_start_matches(metric::PASS_MS);

@@ -2,17 +2,13 @@
 
 use image::RgbImage;
 
-use super::super::results::{SettingData, SuiteData};
-use super::super::tables::{cell, push_refusals, quality_of, table_of};
-use yoro_report::paper::PAPER;
-use yoro_report::stats::mean;
-use yoro_report::text::fixed;
-use yoro_report::{Cell, Section, Table};
 use super::super::Experiment;
 use super::super::job::{Choices, Job, QUICK_SCENES};
 use super::super::record::{Measurement, metric};
+use super::super::results::{SettingData, SuiteData};
 use super::super::runner::{Round, Runner};
 use super::super::scenes::LazyObject;
+use super::super::tables::{cell, push_refusals, quality_of, table_of};
 use super::super::views::{HEADSET_RATE, Motion};
 use crate::streaming::Receiver;
 use yoro::eyes::{Eye, EyePair};
@@ -21,7 +17,11 @@ use yoro_media::rgb_image;
 use yoro_media::video::{Decoder, LiveEncoder, LiveEncoderKind};
 use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
 use yoro_render::{PreparedScene, ViewReader};
+use yoro_report::paper::PAPER;
+use yoro_report::stats::mean;
+use yoro_report::text::fixed;
 use yoro_report::text::slug;
+use yoro_report::{Cell, Section, Table};
 use yoro_stream::{EyeView, FrameRenderer, Mode, Picture, ViewRequest};
 
 const SCENES: [&str; 3] = ["talk", "street", "atrium"];

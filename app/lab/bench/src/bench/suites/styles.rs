@@ -1,17 +1,17 @@
 //! Quality in each shading style
 
-use yoro_assets::ShadingStyle;
-use super::super::results::SuiteData;
-use super::super::tables::Labels;
-use yoro_report::Section;
-use yoro_report::paper::PAPER;
+use super::super::Experiment;
 use super::super::contender::Contender;
 use super::super::frames::{self, FrameMeasures};
 use super::super::job::{Choices, Job};
+use super::super::results::SuiteData;
 use super::super::runner::Runner;
 use super::super::scenes::LazyObject;
-use super::super::Experiment;
+use super::super::tables::Labels;
+use yoro_assets::ShadingStyle;
 use yoro_render::PreparedScene;
+use yoro_report::Section;
+use yoro_report::paper::PAPER;
 
 /// Quality in each shading style.
 pub struct Styles;
