@@ -25,16 +25,16 @@ const MANIFESTS: [&str; 2] = ["Cargo.toml", "app/engines/bevy/Cargo.toml"];
 /// Thousands of lines of Rust that each floor may have. Room for a new thing is made by an old one; a change that needs more
 /// changes this table, and its commit says why.
 const LINES: [(&str, f64); 10] = [
-    ("app/engines", 36.0),
-    ("app/base", 11.0),
-    ("app/vr", 27.0),
-    ("app/lab", 18.5),
-    ("app/program", 6.5),
+    ("app/engines", 36.6),
+    ("app/base", 12.1),
+    ("app/vr", 28.4),
+    ("app/lab", 21.3),
+    ("app/program", 6.7),
     ("android", 4.7),
     ("scenes", 12.3),
     ("shaders-glsl", 0.3),
-    ("tests", 22.0),
-    ("xtask", 10.0),
+    ("tests", 24.2),
+    ("xtask", 11.0),
 ];
 /// Thousands of words that all documents may have.
 const WORDS: f64 = 34.0;
