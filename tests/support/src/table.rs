@@ -156,8 +156,8 @@ pub fn check<D: Device, W: WarpKind + Debug>(device: &D, cases: &[Case<W>]) {
         let channels = if has_alpha(setup.color) && has_alpha(setup.target) { 4 } else { 3 };
         assert_equal(&got.0, rgba, channels, &what);
         if let (Some(got), Some(Expected { values, tolerance, exceptions })) = (got.1, depth) {
-            let different =
-                got.iter().zip(values).filter(|(a, b)| !((**a - **b).abs() <= *tolerance)).count();
+            let is_near = |a: f32, b: f32| (a - b).abs() <= *tolerance;
+            let different = got.iter().zip(values).filter(|(a, b)| !is_near(**a, **b)).count();
             assert!(different <= *exceptions, "{what}: depth of {different} of {} pixels differs", got.len());
         }
     }

@@ -4,8 +4,6 @@ use glow::HasContext;
 
 use crate::Context;
 
-/// More rows than any framebuffer has.
-
 /// The depth test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthTest {

@@ -60,7 +60,7 @@ pub fn check(path: &Path, store: Store, apart_from: &[&str]) -> anyhow::Result<R
     let mut report = Report::default();
     let any_key = store == Store::None || apart_from.contains(&"any-key");
     if has(bundle::CONFIG) {
-        let right = (store == Store::Quest).then(|| "an APK: cargo xtask apk --release --quest");
+        let right = (store == Store::Quest).then_some("an APK: cargo xtask apk --release --quest");
         report.row("form", "bundle", right.map(|right| format!("should be {right}")));
         // The APK is checked without its alignment, which is up to the store.
         let apk = path.with_extension("checked.apk");
@@ -75,7 +75,7 @@ pub fn check(path: &Path, store: Store, apart_from: &[&str]) -> anyhow::Result<R
         fs::remove_file(&apk).with_context(|| format!("{} cannot be removed", apk.display()))?;
         return Ok(report);
     }
-    let right = (store == Store::Play).then(|| "a bundle: cargo xtask apk --release --bundle");
+    let right = (store == Store::Play).then_some("a bundle: cargo xtask apk --release --bundle");
     report.row("form", "APK", right.map(|right| format!("should be {right}")));
     let manifest = Manifest::read(path)?;
     let is_small = size <= MAX_SIZE || manifest.has(":debuggable(") || apart_from.contains(&"any-size");

@@ -11,21 +11,21 @@
 //! let mut chooser = Chooser::new(StereoPath::Synthesis);
 //! # let mut now_ns = 0;
 //! # let render = |_: StereoPath| ();
-//! # let timer = |way| Some(if way == StereoPath::Synthesis { 6.1 } else { 8.9 });
+//! # let timer = |path| Some(if path == StereoPath::Synthesis { 6.1 } else { 8.9 });
 //! # for _ in 0..200 {
 //! // Each frame:
-//! let way = chooser.way();
-//! render(way);
+//! let path = chooser.path();
+//! render(path);
 //! # now_ns += 11_111_111;
 //! chooser.end_frame(&FrameEnd {
 //!     now_ns,
 //!     refresh_hz: 90.0,
-//!     rendered: Some(way),
-//!     cost: timer(way).map(|ms| Cost { frames_ago: 0, ms }),
+//!     rendered: Some(path),
+//!     cost: timer(path).map(|ms| Cost { frames_ago: 0, ms }),
 //!     heat: None,
 //! });
 //! # }
-//! # assert_eq!((chooser.way(), chooser.is_measuring()), (StereoPath::Synthesis, false));
+//! # assert_eq!((chooser.path(), chooser.is_measuring()), (StereoPath::Synthesis, false));
 //! ```
 
 mod samples;

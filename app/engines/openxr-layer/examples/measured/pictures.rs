@@ -141,7 +141,7 @@ unsafe fn read(device: &Device, image: vk::Image, [width, height]: [u32; 2]) -> 
         let fits = |(i, kind): (usize, &vk::MemoryType)| {
             needs.memory_type_bits & (1 << i) != 0 && kind.property_flags.contains(wanted)
         };
-        let kind = types.memory_types_as_slice().iter().enumerate().position(|pair| fits(pair));
+        let kind = types.memory_types_as_slice().iter().enumerate().position(fits);
         let kind = kind.ok_or(vk::Result::ERROR_FEATURE_NOT_PRESENT)? as u32;
         let info = vk::MemoryAllocateInfo::default().allocation_size(needs.size).memory_type_index(kind);
         let memory = device.allocate_memory(&info, None)?;

@@ -362,10 +362,13 @@ pub(super) struct Labels {
     /// The title of the table with all settings.
     pub details: &'static str,
     /// The paper's SSIM and PSNR in dB of a label; `None` if it has none at all.
-    pub papers: Option<fn(&str) -> Option<[f64; 2]>>,
+    pub papers: Option<PaperFigures>,
     /// True if frame times were measured.
     pub timed: bool,
 }
+
+/// Returns the paper's SSIM and PSNR in dB of a label.
+pub type PaperFigures = fn(&str) -> Option<[f64; 2]>;
 
 impl Labels {
     /// Adds plots of quality, a table with a row for each label, and one with all settings.

@@ -17,6 +17,7 @@ use yoro_gl::{Context, GlError};
 use yoro_settings::FrameRate;
 
 /// Where both eyes of a frame are written to.
+#[expect(clippy::large_enum_variant, reason = "there is one, for the length of a call")]
 pub enum FrameTargets<'a> {
     /// Each eye into its target, complete: eyes with an inset are composed there.
     ///

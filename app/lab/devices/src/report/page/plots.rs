@@ -52,12 +52,12 @@ fn simulated(device: &Device) -> &'static str {
 /// Returns plots of power, frame rate and temperature over time in a scene, with a thin line for each run that counts.
 pub fn trace_plots(report: &DeviceReport, device: &Device, scene: &str) -> Vec<Plot> {
     let mark = simulated(device);
-    let quantities = [
-        (Quantity::Power, (|run: &Run| &run.traces.power) as fn(&Run) -> &Vec<(f64, f64)>),
-        (Quantity::Fps, |run| &run.traces.fps),
-        (Quantity::Temperature, |run| &run.traces.temperature),
-    ];
-    let plot = |(quantity, values): (Quantity, fn(&Run) -> &Vec<(f64, f64)>)| {
+    let values = |run: &Run, quantity| match quantity {
+        Quantity::Power => run.traces.power.clone(),
+        Quantity::Fps => run.traces.fps.clone(),
+        _ => run.traces.temperature.clone(),
+    };
+    let plot = |quantity: Quantity| {
         let y = Axis::new(format!("{}, {}{mark}", quantity.name(), quantity.unit()));
         let y = if quantity == Quantity::Temperature { y } else { y.from_zero() };
         let title = format!("{scene}: {} over time{mark}", quantity.name());
@@ -67,9 +67,9 @@ pub fn trace_plots(report: &DeviceReport, device: &Device, scene: &str) -> Vec<P
         let mut runs: Vec<&Run> = of_scene.collect();
         runs.sort_by_key(|run| &run.method);
         for run in runs {
-            plot.curve(Entry::ours(&run.method), values(run).iter().copied());
+            plot.curve(Entry::ours(&run.method), values(run, quantity));
         }
         plot
     };
-    quantities.map(plot).into()
+    [Quantity::Power, Quantity::Fps, Quantity::Temperature].map(plot).into()
 }
