@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The inputs are devices, plans of experiments and captures; the outputs are captures and reports. [`adb`] reaches devices
-//! with the program adb, [`follow`] reads a log across lost connections, [`reading`] parses its lines into samples ([`external_app`] finds the lines of other
+//! with the program adb, `follow` reads a log across lost connections, [`reading`] parses its lines into samples ([`external_app`] finds the lines of other
 //! applications), [`run`] captures one run, [`experiment`] many, [`farm`] reads what device farms give back, and
 //! [`report`] computes figures from them. [`study`] plans and analyses user studies.
 //!

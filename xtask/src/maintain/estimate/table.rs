@@ -20,7 +20,7 @@ pub struct Row {
     pub gpu: String,
     /// The file of the last stage and the macros, such as `synthesis/gather/march.frag WRITE_DEPTH`.
     pub program: String,
-    /// The stage, as in [`Stage::name`].
+    /// The stage, as in `Stage::name`.
     pub stage: String,
     /// Number of instructions, as counted by the compiler; on Adreno issue slots.
     pub instructions: u32,
@@ -28,7 +28,7 @@ pub struct Row {
     pub slots: Option<u32>,
     /// Number of full registers: four times 32 bits on Adreno, 32 bits on Mali.
     pub registers: u32,
-    /// Waves in flight at the same time, at most [`Compiler::most_waves`].
+    /// Waves in flight at the same time, at most `Compiler::most_waves`.
     pub waves: u32,
     /// Lanes per wave on Adreno, which has two sizes. `None` on Mali.
     pub lanes_per_wave: Option<u32>,

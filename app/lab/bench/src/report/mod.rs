@@ -1,4 +1,4 @@
-//! What the reports of `yoro run` and `yoro bench` consist of. This file has the report of `run`; [`mod@bench`] has that of
+//! What the reports of `yoro run` and `yoro bench` consist of. This file has the report of `run`; [`crate::bench`] has that of
 //! `bench`.
 //!
 //! Every figure is shown beside its baseline: quality beside "same image to both eyes" (which costs nothing), cost

@@ -27,7 +27,7 @@ use yoro_gl::{Context, Destination, GlError, Program, RenderTarget, ShaderSource
 
 /// The renderer of one scene: programs for the scene's style and materials, and its shadow map.
 /// After [`Renderer::new`] it is ready for single views. A stereo method compiles what else it needs once, in its first
-/// frame of the scene or in [`crate::stereo::StereoMethod::prepare`]. Nothing is compiled or allocated after that.
+/// frame of the scene or in [`crate::stereo::StereoSession::prepare`]. Nothing is compiled or allocated after that.
 pub struct Renderer {
     pub(crate) gl: Rc<Context>,
     pub(crate) settings: RenderSettings,
