@@ -378,7 +378,7 @@ fn settings_come_from_file_extras_and_properties() {
     );
     assert_eq!(
         run.summary.requests.keys().collect::<Vec<_>>(),
-        ["30 Hz", "hints for 1 thread, 33.3 ms", "sustained performance off"]
+        ["30 Hz", "hints for 1 thread, 33.3 ms", "sustained performance off", "work duration"]
     );
 }
 
