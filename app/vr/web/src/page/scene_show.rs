@@ -7,7 +7,7 @@ use yoro::eyes::{Eye, Pose, StereoViews};
 use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling, RenderTarget, Texture};
 use yoro_render::stereo::{
-    Auto, FrameLoad, FrameReport, FrameTargets, Method, StereoError, StereoFrame, StereoSession,
+    FrameLoad, FrameReport, FrameTargets, Method, StereoError, StereoFrame, StereoSession,
 };
 use yoro_render::{PreparedScene, Renderer};
 
