@@ -63,24 +63,6 @@ impl StereoImages {
         Ok(LayerTargets { wide: self.wide.targets(), inset })
     }
 
-    /// Fits the images to views, and fills them with a colour.
-    ///
-    /// # Errors
-    /// As [`StereoFrame::resize`].
-    pub fn fill(&mut self, views: &StereoViews, color: [f32; 4]) -> Result<(), GlError> {
-        let targets = self.fit(views)?;
-        for EyeTarget { color: to, .. } in targets.layers().flatten() {
-            self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
-            self.gl.fill(to.origin, to.size, color);
-        }
-        Ok(())
-    }
-
-    /// Returns the views that the images show; `None` before the first frame.
-    pub fn views(&self) -> Option<&StereoViews> {
-        self.views.as_ref()
-    }
-
     /// Returns the images of the wide layer: the eyes themselves in frames without an inset.
     pub fn wide(&self) -> &StereoFrame {
         &self.wide

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::frame::Frame;
 use super::session::FrameTargets;
 use crate::view::{DepthCopy, GpuScene, Renderer};
-use yoro::eyes::{Eye, EyesError, Ndc, View};
+use yoro::eyes::{DepthRange, Eye, EyesError, Ndc, View};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Image, RenderTarget, Texture};
 
 /// The reason why a stereo frame could not be rendered.
@@ -106,6 +106,14 @@ impl EyeTarget<'_> {
             texture: Some((color.raw(), color.image())),
             depth: None,
             motion: None,
+        }
+    }
+
+    /// Clears the depth to the farthest of a range, if the target has depth.
+    pub(super) fn clear_depth(&self, gl: &Context, range: DepthRange) {
+        if let Some(DepthTarget { to, .. }) = &self.depth {
+            gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+            gl.clear_rectangle(to.origin, to.size, Some(range.clear_value()));
         }
     }
 

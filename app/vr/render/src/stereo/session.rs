@@ -6,7 +6,7 @@ use super::auto::Auto;
 use super::fallback::{Fallback, FallbackReason, NearSwitch};
 use super::frame::Frame;
 use super::images::{LayerTargets, StereoImages};
-use super::method::{EyeTarget, StereoError, StereoMethod};
+use super::method::{DepthTarget, EyeTarget, StereoError, StereoMethod};
 use super::options::{Method, MethodChoice, StereoOptions};
 use super::rate::RateChooser;
 use crate::prepared::PreparedScene;
@@ -30,6 +30,27 @@ pub enum FrameTargets<'a> {
     Images(&'a mut StereoImages),
 }
 
+impl FrameTargets<'_> {
+    /// Fills the targets with a colour, and their depth with the farthest, in place of a frame.
+    ///
+    /// # Errors
+    /// [`GlError`] if the driver has no memory for the images.
+    pub fn fill(self, gl: &Context, views: &StereoViews, color: [f32; 4]) -> Result<(), GlError> {
+        let layers = match self {
+            FrameTargets::Images(images) => images.fit(views)?,
+            FrameTargets::Layers(layers) => layers,
+            FrameTargets::Eyes(wide) => LayerTargets { wide, inset: None },
+        };
+        for eye in layers.layers().flatten() {
+            eye.clear_depth(gl, views.shown.depth);
+            let to = &eye.color;
+            gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+            gl.fill(to.origin, to.size, color);
+        }
+        Ok(())
+    }
+}
+
 /// What a frame cost, when it was handed to the display.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameLoad {
@@ -37,7 +58,7 @@ pub struct FrameLoad {
     pub ended_ns: i64,
     /// Rate in Hz at which frames are rendered for the display; 0 if unknown.
     pub refresh_hz: f32,
-    /// Refresh rate of the display in Hz, which is twice the former while a runtime makes every second frame.
+    /// Refresh rate of the display in Hz, which is twice `refresh_hz` while a runtime makes every second frame.
     pub display_hz: f32,
     /// Number of refreshes by which the frame was late.
     pub late_refreshes: u32,
@@ -98,8 +119,8 @@ impl StereoSession {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<StereoSession, GlError> {
-        settings.supports(choice.first(), gl.capabilities())?;
         let method = choice.first();
+        settings.supports(method, gl.capabilities())?;
         let is_auto = choice == MethodChoice::Auto;
         let mut session = StereoSession {
             gl: gl.clone(),
@@ -132,7 +153,7 @@ impl StereoSession {
         self.auto.as_ref()
     }
 
-    /// True if the display's runtime is to make the frame after the next one of this session, from motion vectors.
+    /// True if the display's runtime makes every second frame, from motion vectors.
     pub fn uses_runtime_frame_synthesis(&self) -> bool {
         self.options.motion_vectors
             && match self.options.frame_rate {
@@ -266,13 +287,10 @@ impl StereoSession {
         let has_same_frusta = views.wide.eyes.has_same_frusta(&views.shown);
         for (layer, to) in layers.wide.iter_mut().zip(to) {
             layer.motion = to.motion.filter(|_| has_same_frusta);
-            let Some(depth) = to.depth else { continue };
-            if has_same_frusta && depth.to.size == views.wide.eyes.size {
-                layer.depth = Some(depth);
-            } else {
-                let depth = depth.to;
-                self.gl.bind_framebuffer(depth.framebuffer, depth.origin, depth.size);
-                self.gl.clear_rectangle(depth.origin, depth.size, Some(views.shown.depth.clear_value()));
+            let fits = |depth: &DepthTarget| depth.to.size == views.wide.eyes.size;
+            layer.depth = to.depth.filter(|depth| has_same_frusta && fits(depth));
+            if layer.depth.is_none() {
+                to.clear_depth(&self.gl, views.shown.depth);
             }
         }
         layers

@@ -8,12 +8,8 @@ use crate::error::ViewerError;
 use crate::frame::{FrameTiming, PresentReport, SceneState};
 use yoro::choice::Cost;
 use yoro::eyes::{EyePair, Gaze, StereoViews};
-use yoro_gl::{Context, GlError};
 use yoro_lenses::{Content, Panel, Placement};
-use yoro_render::stereo::{
-    Auto, DepthTarget, EyeTarget, FrameLoad, FrameReport, FrameTargets, LayerTargets, StereoFrame,
-    StereoSession,
-};
+use yoro_render::stereo::{Auto, FrameLoad, FrameReport, FrameTargets, StereoFrame, StereoSession};
 use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary};
 
 /// The sizes of the eyes' images are multiples of this many pixels, so that small changes need no new targets.
@@ -49,7 +45,7 @@ impl Viewer {
     pub fn render(&mut self, views: &StereoViews, targets: FrameTargets) -> Result<FrameReport, ViewerError> {
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
         let Some(shown) = &mut self.scene.shown else {
-            show_backdrop(gl, views, targets)?;
+            targets.fill(gl, views, BACKDROP)?;
             return Ok(FrameReport { has_depth: true, ..FrameReport::default() });
         };
         shown.move_on(self.now_ns)?;
@@ -262,22 +258,4 @@ impl Viewer {
     fn render_scale(&self) -> f32 {
         self.settings.render_scale * self.controller.quality().render_scale
     }
-}
-
-/// Fills the targets of a frame without a scene.
-fn show_backdrop(gl: &Context, views: &StereoViews, targets: FrameTargets) -> Result<(), GlError> {
-    let layers = match targets {
-        FrameTargets::Images(images) => return images.fill(views, BACKDROP),
-        FrameTargets::Eyes(wide) => LayerTargets { wide, inset: None },
-        FrameTargets::Layers(layers) => layers,
-    };
-    for EyeTarget { color, depth, .. } in layers.layers().flatten() {
-        if let Some(DepthTarget { to, .. }) = depth {
-            gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
-            gl.clear_rectangle(to.origin, to.size, Some(views.shown.depth.clear_value()));
-        }
-        gl.bind_framebuffer(color.framebuffer, color.origin, color.size);
-        gl.fill(color.origin, color.size, BACKDROP);
-    }
-    Ok(())
 }
