@@ -78,7 +78,13 @@ pub fn remedy(error: &io::Error) -> String {
         io::ErrorKind::PermissionDenied => "no permission; change its rights or choose another place".into(),
         io::ErrorKind::StorageFull => "the disk is full; free some space or choose another place".into(),
         io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only; choose another place".into(),
-        _ => error.to_string(),
+        io::ErrorKind::NotFound => "there is no such place; check the path".into(),
+        io::ErrorKind::NotADirectory => "a part of the path is a file; choose another place".into(),
+        _ => {
+            // The words of the operating system, without its number.
+            let text = error.to_string();
+            text.split(" (os error").next().unwrap_or(&text).to_owned()
+        }
     }
 }
 

@@ -30,6 +30,14 @@ impl Group for Renderer {
     const KEYS: &'static [&'static str] = &["msaa"];
 }
 
+/// The settings of the renderer that `yoro xr` has options for.
+#[derive(Clone, Copy, Debug)]
+pub struct HeadsetRenderer;
+
+impl Group for HeadsetRenderer {
+    const KEYS: &'static [&'static str] = &["msaa", "foveation"];
+}
+
 /// The settings of the renderer of image groups: each pixel belongs to one surface by default.
 #[derive(Clone, Copy, Debug)]
 pub struct OneSample;
@@ -79,6 +87,7 @@ pub struct Lenses;
 
 impl Group for Lenses {
     const KEYS: &'static [&'static str] = &["viewer", "method", "foveation"];
+    const DEFAULTS: &'static [&'static str] = &["method=yoro", "foveation=off"];
 }
 
 /// The setting of frames in levels.
@@ -87,6 +96,7 @@ pub struct Foveated;
 
 impl Group for Foveated {
     const KEYS: &'static [&'static str] = &["foveation"];
+    const DEFAULTS: &'static [&'static str] = &["foveation=off"];
 }
 
 /// The options of a [`Group`]: `--KEY VALUE`; for switches `--KEY`, or `--no-KEY` if they are on by default.
@@ -275,6 +285,10 @@ impl SettingsArgs {
         named: impl IntoIterator<Item = String>,
     ) -> anyhow::Result<Settings> {
         let hud = self.no_hud.then(|| "hud=false".to_owned());
+        // Android's properties may be empty; here a script's variable is.
+        if let Some(empty) = self.overrides.iter().find(|pair| pair.trim_end().ends_with('=')) {
+            bail!("--set {empty} has no value: give one, or leave it out");
+        }
         let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
         let settings = defaults.changed(self.settings.as_deref(), overrides)?;
         if settings.frame_rate != FrameRate::Full && settings.near_field.is_some() {

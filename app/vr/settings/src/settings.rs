@@ -9,7 +9,7 @@ use toml::{Table, Value};
 use crate::choices::{DisplayKind, FrameRate, MSAA, Method, MethodChoice, Performance, Pipeline, Timewarp};
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
-use crate::value::SettingValue;
+use crate::value::{SettingValue, shown};
 use yoro::eyes::{Eye, FoveationLevel, GuardBand};
 
 /// The largest settings file in bytes.
@@ -150,12 +150,12 @@ settings! {
     "render-scale" render_scale: f32 = 1.0;
         range(|s| (0.25..=2.0).contains(&s.render_scale), "give a factor from 0.25 to 2"),
     /// Render each eye at full density only around its axis, as far as 30 (`low`) or 20 degrees (`medium`, `high`). Beyond,
-    /// with half (`low`, `medium`) or a third of the pixels along each axis. Not with `timewarp=position`.
-    "foveation" foveation: Option<FoveationLevel> = None; auto("headsets: medium; others: off"),
+    /// with half (`low`, `medium`) or a third of the pixels along each axis.
+    "foveation" foveation: Option<FoveationLevel> = None; auto("headsets: medium; others, and all measurements: off"),
     /// Lower render scale and ImBuffer to hold the display's refresh rate and to spare a hot device.
     "adaptive" adaptive: bool = false,
     /// Phones: how the finished image follows the head after rendering. `position` copies the depth of both eyes and adds
-    /// three passes to each.
+    /// three passes to each; not with `foveation`.
     "timewarp" timewarp: Timewarp = Timewarp::default(),
     /// Correct the lenses' chromatic aberration.
     "chromatic" chromatic: bool = false,
@@ -269,7 +269,7 @@ impl Settings {
         find(origin, &key)?.set(self, value).map_err(|remedy| SettingsError::Value {
             origin: origin.into(),
             key,
-            value: value.to_string(),
+            value: shown(value),
             remedy,
         })
     }

@@ -42,6 +42,10 @@ impl Experiment for Flicker {
         }))
     }
 
+    fn moves(&self, _job: &Job) -> bool {
+        true
+    }
+
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
         let views = runner.path(job, scene, views::STEP)?;
         let mut field = Field::new(runner, job, scene, &views, false)?;

@@ -99,6 +99,10 @@ impl Experiment for HalfRate {
         job.frames as u64
     }
 
+    fn moves(&self, _job: &Job) -> bool {
+        true
+    }
+
     /// Measures the frame between two renders of a moving scene, each against a real render at that time and pose.
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
         runner.announce(job, 0);
