@@ -98,6 +98,13 @@ pub fn vulkan() -> bool {
     needs(&VULKAN).iter().all(|need| need.found.is_ok())
 }
 
+/// Installs the compiler and the runtime for tests in C#, and returns the runtime.
+pub fn mono() -> anyhow::Result<PathBuf> {
+    let needs = || vec![Need::program("mcs", &["mono-mcs"]), Need::program("mono", &["mono-runtime"])];
+    apt::install_missing(needs, true)?;
+    apt::find_program("mono").context("it cannot be found")
+}
+
 /// Returns the browser for tests of pages. Installs one if necessary and apt has one.
 pub fn browser() -> Option<PathBuf> {
     let find = || ["chromium", "chromium-browser", "google-chrome"].into_iter().find_map(apt::find_program);
