@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use yoro::eyes::Eye;
-use yoro_report::{OtherEye, Picture, Pictures, Report, ReportError, ReportFiles, Section, Text};
+use yoro_report::{Pictures, Report, ReportError, ReportFiles, Section, Text};
 
 use super::pictures::picture_folder;
 use super::record::Results;
 use super::results::{self, CONVENTIONAL, MONO, SuiteData};
 use super::suites::EXPERIMENTS;
 use super::tables;
-use crate::report::{QUALITY_METHOD, Viewpoint};
+use crate::report::{QUALITY_METHOD, Viewpoint, pictures};
 use yoro_media::PictureError;
 use yoro_metrics::MetricsError;
 
@@ -95,11 +95,6 @@ impl BenchReport {
         Report { title: TITLE.into(), summary: vec![PAPERS_MARK.into()], sections }
     }
 
-    /// Returns the files that [`BenchReport::write`] writes into `folder`.
-    pub fn files(folder: &Path) -> ReportFiles {
-        ReportFiles::of(folder, "report", false)
-    }
-
     /// Writes `report.html` and `report.md` into a folder.
     ///
     /// # Errors
@@ -158,7 +153,7 @@ impl BenchReport {
 
 /// Loads the pictures beside a file, in the order of its settings.
 fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
-    let mut pictures = Vec::new();
+    let mut all = Vec::new();
     let dominant_eye = file.header.parameters.iter().find(|parameter| parameter.name == "dominant eye");
     let dominant_eye = match dominant_eye {
         Some(parameter) if parameter.value == Eye::Left.name() => Eye::Left,
@@ -186,30 +181,7 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
         let setting = &facts.conditions;
         let point = setting.label.clone().or(setting.point.map(|point| point.to_string()));
         let note = point.map_or_else(|| setting.suite.clone(), |point| format!("{}, {point}", setting.suite));
-        pictures.push(Pictures { title: setting.scene.clone(), note, ..pictures_of(&viewpoint) });
+        all.push(pictures(&viewpoint, setting.scene.clone(), format!("{note}, {}", viewpoint.name)));
     }
-    Ok(pictures)
-}
-
-/// Returns the pictures of a viewpoint: the real render, each method's, the same image, and maps of the errors.
-fn pictures_of(viewpoint: &Viewpoint) -> Pictures {
-    let caption =
-        |quality: &yoro_metrics::Quality| format!("PSNR {}, SSIM {:.4}", quality.psnr, quality.ssim_gaussian);
-    let picture = |label: String, caption: String, image: &image::RgbImage, is_map: bool| Picture {
-        label,
-        caption,
-        image: image.clone(),
-        is_map,
-    };
-    let same = caption(&viewpoint.same_image);
-    let views = &viewpoint.views;
-    let mut pictures =
-        vec![picture("really rendered".into(), viewpoint.name.clone(), &viewpoint.ground_truth, false)];
-    pictures.extend(views.iter().map(|v| picture(v.method.clone(), caption(&v.quality), &v.eye, false)));
-    let dominant = OtherEye { picture: pictures.len(), is_left: viewpoint.dominant_eye == Eye::Left };
-    pictures.push(picture("same image".into(), same.clone(), &viewpoint.dominant, false));
-    let error = |name: &str| format!("error: {name}");
-    pictures.extend(views.iter().map(|v| picture(error(&v.method), caption(&v.quality), &v.error, true)));
-    pictures.push(picture(error("same image"), same, &viewpoint.same_image_error, true));
-    Pictures { pictures, other_eye: Some(dominant), ..Pictures::default() }
+    Ok(all)
 }
