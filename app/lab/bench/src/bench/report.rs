@@ -1,6 +1,6 @@
 //! The report of `yoro bench`: files of results as sections of tables, plots and pictures.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use yoro::eyes::Eye;
 use yoro_report::{Pictures, Report, ReportError, ReportFiles, Section, Text};
@@ -12,7 +12,6 @@ use super::suites::EXPERIMENTS;
 use super::tables;
 use crate::report::{QUALITY_METHOD, Viewpoint, pictures};
 use yoro_media::PictureError;
-use yoro_metrics::MetricsError;
 
 /// The heading of the page.
 const TITLE: &str = "yoro: every method side by side";
@@ -29,23 +28,12 @@ each round, so that ratios pair frames of the same round; means of ratios over s
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BenchReportError {
-    /// A file has no finished round.
-    #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
-    Empty {
-        /// The file.
-        path: PathBuf,
-    },
+    /// A file has no finished round, or the pictures of a setting cannot be compared. Holds the sentence.
+    #[error("{0}")]
+    Unusable(String),
     /// A picture beside a file cannot be read.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// The pictures of a setting cannot be compared.
-    #[error("the pictures in {} do not go together ({source}): measure again, or remove the folder", path.display())]
-    Sizes {
-        /// The folder.
-        path: PathBuf,
-        /// The mistake.
-        source: MetricsError,
-    },
 }
 
 /// The combined contents of files of results.
@@ -62,7 +50,10 @@ impl BenchReport {
     /// [`BenchReportError`] for a file without a finished round, and for damaged pictures.
     pub fn new(files: Vec<Results>) -> Result<BenchReport, BenchReportError> {
         if let Some(empty) = files.iter().find(|file| file.measurements().next().is_none()) {
-            return Err(BenchReportError::Empty { path: empty.path.clone() });
+            return Err(BenchReportError::Unusable(format!(
+                "{} holds no finished round: let yoro bench finish one, then report",
+                empty.path.display()
+            )));
         }
         let suites = results::suites(&files);
         let mut pictures = Vec::new();
@@ -176,8 +167,12 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
         }
         let frame = facts.frames.first().cloned().unwrap_or_else(|| "first frame".into());
         let (dominant, truth) = (load("dominant")?, load("truth")?);
-        let viewpoint = Viewpoint::measure(frame, dominant_eye, dominant, truth, views)
-            .map_err(|source| BenchReportError::Sizes { path: folder.clone(), source })?;
+        let viewpoint = Viewpoint::measure(frame, dominant_eye, dominant, truth, views).map_err(|error| {
+            BenchReportError::Unusable(format!(
+                "the pictures in {} do not go together ({error}): measure again, or remove the folder",
+                folder.display()
+            ))
+        })?;
         let setting = &facts.conditions;
         let point = setting.label.clone().or(setting.point.map(|point| point.to_string()));
         let note = point.map_or_else(|| setting.suite.clone(), |point| format!("{}, {point}", setting.suite));
