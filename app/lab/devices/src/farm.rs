@@ -65,9 +65,6 @@ pub fn command(apk: &str, scenarios: &[u32], devices: &[String]) -> String {
 ///
 /// If several files have lines of the same step, such as the log and the results, a file with the whole step is
 /// preferred, then the one with the most samples.
-///
-/// # Errors
-/// [`FarmError`].
 pub fn read(folder: &Path, out: &Path) -> Result<Vec<RunInfo>, FarmError> {
     let mut found: BTreeMap<(String, String), Step> = BTreeMap::new();
     let is_log = |path: &Path| path.ends_with(LOGS[0]) || files::has_extension(path, &LOGS);

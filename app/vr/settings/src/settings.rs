@@ -186,9 +186,6 @@ impl Settings {
     }
 
     /// Returns the defaults, changed as by [`Settings::changed`].
-    ///
-    /// # Errors
-    /// [`SettingsError`].
     pub fn resolve<S: AsRef<str>>(
         file: Option<&Path>,
         overrides: impl IntoIterator<Item = S>,
@@ -198,9 +195,6 @@ impl Settings {
 
     /// Returns these settings, changed first by a TOML file, if given, then by `key=value` texts in order. An empty
     /// value changes nothing, since a system property that was unset reads as empty.
-    ///
-    /// # Errors
-    /// [`SettingsError`].
     pub fn changed<S: AsRef<str>>(
         self,
         file: Option<&Path>,

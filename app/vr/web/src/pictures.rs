@@ -113,9 +113,6 @@ pub struct PicturePair {
 
 impl PicturePair {
     /// Decodes two files, as `yoro synthesize` does.
-    ///
-    /// # Errors
-    /// [`PictureError`].
     pub fn load(color: &Path, depth: &Path) -> Result<PicturePair, PictureError> {
         let (color, depth) = (load_color(color)?, load_depth(depth)?);
         let ([width, height], [w, h]) = (color.dimensions().into(), depth.image.dimensions().into());
