@@ -162,9 +162,8 @@ fn sweeps_have_their_points_and_baselines() {
 fn the_other_experiments_are_measured_and_reported() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    let line =
-        "bench reprojection half-rate foveation --quick --scene talk --size 64x64 --rounds 1 --out r.jsonl";
-    succeed(at, line);
+    let options = "--quick --scene talk --size 64x64 --rounds 1 --out r.jsonl";
+    succeed(at, &format!("bench reprojection half-rate foveation stream {options}"));
     let records = records(&at.join("r.jsonl"));
     let who = |label: &str| -> Vec<&str> {
         let measured = of_kind(&records, "measurement").into_iter().filter(|m| m["label"] == label);
@@ -180,9 +179,16 @@ fn the_other_experiments_are_measured_and_reported() {
     assert_eq!(who("60 degrees").len(), 9);
     succeed(at, "report r.jsonl --out out");
     let results = fs::read_to_string(at.join("out/report.md")).unwrap();
-    for heading in ["## Reprojection", "## Half rate", "## Foveation"] {
-        assert!(results.contains(heading), "{heading}: {results}");
+    for needed in
+        ["## Reprojection", "## Half rate", "## Foveation", "one eye and depth, QP 20", "the paper's -39.6 %"]
+    {
+        assert!(results.contains(needed), "{needed}: {results}");
     }
+    // Three quantizers, from fine to coarse: each costs more than the next one.
+    let rates = results.lines().filter_map(|line| line.strip_prefix("| two eyes, rotation, QP "));
+    let rates = rates.filter_map(|line| line.split(" | ").nth(1)?.trim_end_matches(" |").parse().ok());
+    let rates: Vec<f64> = rates.take(3).collect();
+    assert!(rates.len() == 3 && rates.is_sorted_by(|a, b| a > b), "{rates:?}: {results}");
 }
 
 #[test]

@@ -27,41 +27,15 @@ pub enum SettingsError {
         /// The system's error.
         source: std::io::Error,
     },
-    /// The file is not TOML.
-    #[error("the settings file {path} is not TOML ({what}): write lines such as scene = \"prototype\"")]
-    Syntax {
-        /// The file.
-        path: PathBuf,
-        /// The parser's message.
-        what: String,
-    },
-    /// The key does not exist.
-    #[error("{origin}: there is no setting \"{key}\"; choose one of {}", keys())]
-    UnknownKey {
-        /// The file, or the override.
-        origin: String,
-        /// The key.
-        key: String,
-    },
-    /// The value does not fit its key.
-    #[error("{origin}: the setting \"{key}\" cannot be {value}: {remedy}")]
-    Value {
-        /// The file, or the override.
-        origin: String,
-        /// The key.
-        key: String,
-        /// The value given.
-        value: String,
-        /// The possible values.
-        remedy: String,
-    },
-    /// The override is not `key=value`.
-    #[error("\"{0}\" is not a setting: write key=value, such as method=yoro")]
-    NoPair(String),
+    /// The file is not TOML, a setting does not exist, or its value does not fit. Holds the sentence.
+    #[error("{0}")]
+    Unusable(String),
 }
 
-fn keys() -> String {
-    SETTINGS.iter().map(|setting| setting.key).collect::<Vec<_>>().join(", ")
+impl SettingsError {
+    fn value(origin: &str, key: &str, value: &str, remedy: &str) -> SettingsError {
+        SettingsError::Unusable(format!("{origin}: the setting \"{key}\" cannot be {value}: {remedy}"))
+    }
 }
 
 /// Generates [`Settings`], their defaults and [`SETTINGS`] from the same rows. A field's documentation is its help.
@@ -212,9 +186,6 @@ impl Settings {
     }
 
     /// Returns the defaults, changed as by [`Settings::changed`].
-    ///
-    /// # Errors
-    /// [`SettingsError`].
     pub fn resolve<S: AsRef<str>>(
         file: Option<&Path>,
         overrides: impl IntoIterator<Item = S>,
@@ -224,9 +195,6 @@ impl Settings {
 
     /// Returns these settings, changed first by a TOML file, if given, then by `key=value` texts in order. An empty
     /// value changes nothing, since a system property that was unset reads as empty.
-    ///
-    /// # Errors
-    /// [`SettingsError`].
     pub fn changed<S: AsRef<str>>(
         self,
         file: Option<&Path>,
@@ -253,7 +221,10 @@ impl Settings {
             Ok(table) => table,
             Err(error) => {
                 let what = toml::de::Error::message(&error).trim().replace('\n', " ");
-                return vec![SettingsError::Syntax { path: path.into(), what }];
+                return vec![SettingsError::Unusable(format!(
+                    "the settings file {} is not TOML ({what}): write lines such as scene = \"prototype\"",
+                    path.display()
+                ))];
             }
         };
         let origin = path.display().to_string();
@@ -266,12 +237,8 @@ impl Settings {
     }
 
     fn set(&mut self, origin: &str, key: String, value: &Value) -> Result<(), SettingsError> {
-        find(origin, &key)?.set(self, value).map_err(|remedy| SettingsError::Value {
-            origin: origin.into(),
-            key,
-            value: shown(value),
-            remedy,
-        })
+        let set = find(origin, &key)?.set(self, value);
+        set.map_err(|remedy| SettingsError::value(origin, &key, &shown(value), &remedy))
     }
 
     /// Sets one setting by a text `key=value`. Lists are written as in TOML or separated by commas; `auto` resets a
@@ -280,15 +247,13 @@ impl Settings {
     /// # Errors
     /// [`SettingsError`]; the settings stay unchanged.
     pub fn apply(&mut self, pair: &str) -> Result<(), SettingsError> {
-        let (key, text) = pair.split_once('=').ok_or_else(|| SettingsError::NoPair(pair.into()))?;
+        let (key, text) = pair.split_once('=').ok_or_else(|| {
+            let what = format!("\"{pair}\" is not a setting: write key=value, such as method=yoro");
+            SettingsError::Unusable(what)
+        })?;
         let key = key.trim();
-        let setting = find(pair, key)?;
-        setting.parse_into(self, text).map_err(|(value, remedy)| SettingsError::Value {
-            origin: pair.into(),
-            key: key.into(),
-            value,
-            remedy,
-        })
+        let parsed = find(pair, key)?.parse_into(self, text);
+        parsed.map_err(|(value, remedy)| SettingsError::value(pair, key, &value, &remedy))
     }
 }
 
@@ -307,7 +272,10 @@ impl Display for Settings {
 
 /// Returns the setting with a key from a file or a text.
 fn find(origin: &str, key: &str) -> Result<&'static Setting, SettingsError> {
-    Setting::find(key).ok_or_else(|| SettingsError::UnknownKey { origin: origin.into(), key: key.into() })
+    Setting::find(key).ok_or_else(|| {
+        let keys = SETTINGS.iter().map(|setting| setting.key).collect::<Vec<_>>().join(", ");
+        SettingsError::Unusable(format!("{origin}: there is no setting \"{key}\"; choose one of {keys}"))
+    })
 }
 
 #[cfg(test)]

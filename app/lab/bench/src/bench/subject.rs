@@ -47,7 +47,8 @@ impl Subject {
         })
     }
 
-    /// Compiles a method that has all pixels only where the eyes look, and always does what its name says.
+    /// Compiles a method that has all pixels only where the eyes look, and always does what its name says. It may write
+    /// motion vectors, for a runtime that makes frames of them.
     ///
     /// # Errors
     /// As [`Subject::new`].
@@ -56,22 +57,9 @@ impl Subject {
         method: Method,
         settings: &RenderSettings,
         foveation: FoveationLevel,
+        motion_vectors: bool,
     ) -> Result<Subject, GlError> {
-        let options = StereoOptions { policy: None, ..StereoOptions::default() };
-        Ok(Subject { foveation, ..Subject::new(gl, method, settings, &options)? })
-    }
-
-    /// Compiles the same as [`Subject::foveated`] for a runtime that makes frames of motion vectors.
-    ///
-    /// # Errors
-    /// As [`Subject::new`].
-    pub fn with_motion(
-        gl: &Rc<Context>,
-        method: Method,
-        settings: &RenderSettings,
-        foveation: FoveationLevel,
-    ) -> Result<Subject, GlError> {
-        let options = StereoOptions { policy: None, motion_vectors: true, ..StereoOptions::default() };
+        let options = StereoOptions { policy: None, motion_vectors, ..StereoOptions::default() };
         Ok(Subject { foveation, ..Subject::new(gl, method, settings, &options)? })
     }
 

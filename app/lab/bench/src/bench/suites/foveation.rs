@@ -205,7 +205,7 @@ impl Foveator {
                     level => format!("{name}-{}", level.name()),
                 },
                 is_synthesis: method == Method::Synthesized,
-                subject: Subject::foveated(gl, method, &job.render, level)?,
+                subject: Subject::foveated(gl, method, &job.render, level, false)?,
             })
         });
         made.collect()

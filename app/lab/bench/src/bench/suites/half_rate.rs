@@ -190,7 +190,7 @@ struct ReadBack {
 
 impl Contenders {
     fn new(gl: &Rc<Context>, job: &Job, level: FoveationLevel) -> Result<Contenders, GlError> {
-        let with_motion = |method, level| Subject::with_motion(gl, method, &job.render, level);
+        let with_motion = |method, level| Subject::foveated(gl, method, &job.render, level, true);
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         let target = || RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F));
         Ok(Contenders {
@@ -198,7 +198,7 @@ impl Contenders {
             whole: with_motion(Method::Conventional, FoveationLevel::Off)?,
             conventional: with_motion(Method::Conventional, level)?,
             synthesized: with_motion(Method::Synthesized, level)?,
-            mono: Subject::foveated(gl, Method::Mono, &job.render, level)?,
+            mono: Subject::foveated(gl, Method::Mono, &job.render, level, false)?,
             frame: StereoFrame::new(gl, job.eyes.size)?,
             vectors: [target()?, target()?],
             depth: DepthReader::new(gl)?,
