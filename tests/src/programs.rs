@@ -91,7 +91,7 @@ fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &Scene) -> anyhow
     let mut scene = PreparedScene::new(gl, scene.clone(), settings)?;
     for method in Method::ALL {
         if is_tested(method, settings, gl) {
-            let options = StereoOptions { near_field: Some(1.0), ..StereoOptions::default() };
+            let options = StereoOptions::default();
             StereoSession::new(gl, method.into(), settings, &options)?.prepare(&mut scene)?;
         }
     }

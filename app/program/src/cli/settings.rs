@@ -4,14 +4,13 @@ use std::ffi::OsStr;
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
-use anyhow::bail;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
 use yoro::eyes::Foveation;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
-use yoro_settings::{FrameRate, Setting, Settings};
+use yoro_settings::{Setting, Settings};
 use yoro_viewer::stereo_options;
 
 /// A group of settings that a subcommand has options for.
@@ -61,7 +60,7 @@ pub struct Stereo;
 
 impl Group for Stereo {
     const KEYS: &'static [&'static str] =
-        &["pipeline", "imbuffer", "linear-interpolation", "strict", "guard-band", "near-field", "switch"];
+        &["pipeline", "imbuffer", "linear-interpolation", "strict", "guard-band", "switch"];
 }
 
 /// The settings of stereo frames whose pipelines are compared, each as its name says: none is switched to two renders.
@@ -69,8 +68,7 @@ impl Group for Stereo {
 pub struct Compared;
 
 impl Group for Compared {
-    const KEYS: &'static [&'static str] =
-        &["imbuffer", "linear-interpolation", "strict", "guard-band", "near-field"];
+    const KEYS: &'static [&'static str] = &["imbuffer", "linear-interpolation", "strict", "guard-band"];
 }
 
 impl SettingOptions<Compared> {
@@ -290,13 +288,6 @@ impl SettingsArgs {
             bail!("--set {empty} has no value: give one, or leave it out");
         }
         let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
-        let settings = defaults.changed(self.settings.as_deref(), overrides)?;
-        if settings.frame_rate != FrameRate::Full && settings.near_field.is_some() {
-            bail!(
-                "near-field and frame-rate={} do not go together: leave one of them out",
-                settings.frame_rate.name()
-            );
-        }
-        Ok(settings)
+        Ok(defaults.changed(self.settings.as_deref(), overrides)?)
     }
 }

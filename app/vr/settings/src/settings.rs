@@ -99,15 +99,11 @@ settings! {
     "guard-band" guard_band: Option<GuardBand> = None;
         value_name("none|Npx|METRES");
         auto("1.0; paper: none"),
-    /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
-    "near-field" near_field: Option<f32> = None;
-        value_name("METRES");
-        range(|s| s.near_field.is_none_or(is_positive), "give metres above 0, or auto"),
     /// Switch to two real renders while most of the view is too near.
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),
-    /// Headsets whose runtime makes frames from colour, depth and motion vectors: with yoro and conventional, without near
-    /// field, render every second frame and leave the others to the runtime.
+    /// Headsets whose runtime makes frames from colour, depth and motion vectors: with yoro and conventional, render
+    /// every second frame and leave the others to the runtime.
     "frame-rate" frame_rate: FrameRate = FrameRate::default(),
     /// The viewer: v1, v2, the URI of its QR code, or a parameter file.
     "viewer" viewer: String = "v2".into(),
@@ -207,7 +203,28 @@ impl Settings {
         for pair in overrides {
             settings.apply(pair.as_ref())?;
         }
-        Ok(settings)
+        settings.contradiction().map_or(Ok(settings), Err)
+    }
+
+    /// Returns what is wrong with two settings together, of which the first one has no effect; `None` if nothing is.
+    pub fn contradiction(&self) -> Option<SettingsError> {
+        let foveation = self.foveation.filter(|level| *level != FoveationLevel::Off);
+        if let Some(level) = foveation.filter(|_| self.timewarp == Timewarp::Position) {
+            let reason = "timewarp=position do not go together, since that moves whole eyes";
+            return Some(SettingsError::Unusable(format!(
+                "foveation={} and {reason}: leave one of them out",
+                level.name()
+            )));
+        }
+        let writes_motion = [Method::Synthesized, Method::Conventional].contains(&self.method.first());
+        (self.frame_rate != FrameRate::Full && !writes_motion).then(|| {
+            let reason = "do not go together, since only yoro and conventional write motion vectors";
+            SettingsError::Unusable(format!(
+                "frame-rate={} and method={} {reason}: leave one of them out",
+                self.frame_rate.name(),
+                self.method.name()
+            ))
+        })
     }
 
     /// Applies whatever is valid in a TOML file, and returns the errors, for programs that cannot simply be restarted.
@@ -364,6 +381,28 @@ mod tests {
         refused("screen=15.8x7.1mm", &["30 to 400"]);
         refused("frame-rate=36", &["\"frame-rate\"", "full"]);
         refused("refresh-rate=0", &["\"refresh-rate\"", "auto"]);
+    }
+
+    #[test]
+    fn settings_without_effect_beside_others_are_refused() {
+        let refused = |one: &str, other: &str| {
+            let message = with(&[one, other]).unwrap_err().to_string();
+            assert!(
+                message.starts_with(&format!("{one} and {other} do not go together, since ")),
+                "{message}"
+            );
+        };
+        refused("foveation=medium", "timewarp=position");
+        let without =
+            Method::ALL.into_iter().filter(|m| ![Method::Synthesized, Method::Conventional].contains(m));
+        for method in without {
+            for rate in ["half", "auto"] {
+                refused(&format!("frame-rate={rate}"), &format!("method={}", method.name()));
+            }
+        }
+        for pairs in [["foveation=off", "timewarp=position"], ["frame-rate=half", "method=auto"]] {
+            assert!(with(&pairs).is_ok(), "{pairs:?}");
+        }
     }
 
     #[test]

@@ -44,12 +44,10 @@ pub struct StereoOptions {
     pub synthesis: PipelineOptions,
     /// How much wider the dominant eye is rendered.
     pub guard_band: GuardBand,
-    /// Objects nearer than this, in metres, are rendered for both eyes.
-    pub near_field: Option<f32>,
     /// When to render both eyes of frames that are mostly too near; `None` for never.
     pub policy: Option<NearFieldPolicy>,
     /// True if the display's runtime makes frames from the motion vectors of rendered ones ([`super::MotionTarget`]), which
-    /// [`Method::Synthesized`] without near field and [`Method::Conventional`] then write.
+    /// [`Method::Synthesized`] and [`Method::Conventional`] then write.
     pub motion_vectors: bool,
     /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
     /// `f_px * IPD / split_disparity` metres.
@@ -63,7 +61,6 @@ impl Default for StereoOptions {
         StereoOptions {
             synthesis: PipelineOptions::default(),
             guard_band: GuardBand::Distance(1.0),
-            near_field: None,
             policy: Some(NearFieldPolicy::default()),
             motion_vectors: false,
             split_disparity: 1.0,

@@ -1,9 +1,9 @@
-//! The last pass of an eye over which more is drawn: near objects, and transparent surfaces.
+//! The last pass of an eye over which transparent surfaces are drawn.
 
 use std::rc::Rc;
 
 use super::frame::Frame;
-use crate::view::{DepthImage, Rectangle, Renderer, Selection};
+use crate::view::{DepthImage, Rectangle, Renderer};
 use yoro::eyes::{DepthConvention, Eye};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, Texture, TileTarget,
@@ -12,29 +12,13 @@ use yoro_gl::{
 /// The format of depth, as in the samples of a view.
 const DEPTH: Format = Format::Depth32F;
 
-/// What is drawn over both eyes of a frame, after the rendered one is composited and the other one synthesized.
-#[derive(Clone, Copy)]
-pub(super) struct OverlaySurfaces {
-    /// The near objects, if they are left out of the synthesis.
-    pub(super) near: Option<Selection>,
-    pub(super) transparent: bool,
-}
-
-impl OverlaySurfaces {
-    /// True if anything is drawn. It is then tested against the depth of either eye.
-    pub(super) fn is_any(&self) -> bool {
-        self.transparent || self.near.is_some()
+/// Returns the part of an eye in which its depth is needed: where transparent surfaces are drawn over it, or all of it if
+/// its depth is wanted.
+pub(super) fn depth_part(frame: &Frame, eye: Eye, transparent: bool) -> Option<Rectangle> {
+    if frame.wants_depth(eye) {
+        return Some(Rectangle::whole(frame.pair.size));
     }
-
-    /// Returns the part of an eye in which its depth is needed: where anything is drawn over it, or all of it if its
-    /// depth is wanted.
-    pub(super) fn depth_part(&self, frame: &Frame, eye: Eye) -> Option<Rectangle> {
-        let whole = Rectangle::whole(frame.pair.size);
-        if self.near.is_some() || frame.wants_depth(eye) {
-            return Some(whole);
-        }
-        frame.scene.transparent_part(&frame.pair.view(eye)).filter(|_| self.transparent)
-    }
+    frame.scene.transparent_part(&frame.pair.view(eye)).filter(|_| transparent)
 }
 
 /// The images in which an eye is finished. A picture and its depth are written, more is drawn over them, and the average
@@ -81,27 +65,22 @@ impl OverlayPass {
         })
     }
 
-    /// Returns the place to write an eye to, with depth if `over` draws anything or the eye's depth is wanted.
+    /// Returns the place to write an eye to, with depth if transparent surfaces are drawn over it or its depth is wanted.
     pub(super) fn begin(
         &mut self,
         frame: &Frame,
         eye: Eye,
-        over: &OverlaySurfaces,
+        transparent: bool,
     ) -> Result<(Destination, bool), GlError> {
-        let (place, has_depth) = self.choose(frame, eye, over)?;
+        let (place, has_depth) = self.choose(frame, eye, transparent)?;
         self.place = place;
         Ok((place, has_depth))
     }
 
-    fn choose(
-        &mut self,
-        frame: &Frame,
-        eye: Eye,
-        over: &OverlaySurfaces,
-    ) -> Result<(Destination, bool), GlError> {
+    fn choose(&mut self, frame: &Frame, eye: Eye, transparent: bool) -> Result<(Destination, bool), GlError> {
         let (to, size) = (frame.to(eye), frame.pair.size);
         let wants_depth = frame.wants_depth(eye);
-        if !over.is_any() && !wants_depth {
+        if !transparent && !wants_depth {
             self.target = OverlayTarget::Direct;
             return Ok((to.color, false));
         }
@@ -153,16 +132,16 @@ impl OverlayPass {
     }
 
     /// Draws over the eye that was written to the place that [`OverlayPass::begin`] returned, and completes its target.
-    pub(super) fn finish(&self, frame: &Frame, eye: Eye, over: &OverlaySurfaces) {
+    pub(super) fn finish(&self, frame: &Frame, eye: Eye, transparent: bool) {
         if self.target == OverlayTarget::Direct {
             return;
         }
         let view = frame.pair.view(eye);
         let samples = if self.target == OverlayTarget::Image { 1 } else { self.samples };
-        if over.is_any() {
+        if transparent {
             let place = &self.place;
             self.gl.bind_framebuffer(place.framebuffer, place.origin, place.size);
-            frame.renderer.draw_over(&frame.scene, &view, over.near, samples);
+            frame.renderer.draw_over(&frame.scene, &view, samples);
         }
         match (self.target, &self.multisample, &self.tile, &self.image) {
             (OverlayTarget::Samples, Some(samples), ..) => {

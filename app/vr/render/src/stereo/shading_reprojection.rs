@@ -7,7 +7,7 @@
 
 use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
-use super::overlay::{OverlayPass, OverlaySurfaces};
+use super::overlay::{OverlayPass, depth_part};
 use crate::view::{GpuScene, Layout, Renderer, Reprojection, Targets};
 use yoro::eyes::{DisparityMap, Eye, GuardBand};
 
@@ -64,11 +64,11 @@ impl StereoMethod for ShadingReprojection {
         if wants_depth {
             frame.write_depth(other, &second.depth(view.size, Eye::Left, [0, 0]));
         }
-        let surfaces = OverlaySurfaces { near: None, transparent: frame.scene.is_transparent_in(&view) };
-        let (place, has_depth) = over.begin(frame, eye, &surfaces)?;
-        let part = surfaces.depth_part(frame, eye).filter(|_| has_depth);
+        let transparent = frame.scene.is_transparent_in(&view);
+        let (place, has_depth) = over.begin(frame, eye, transparent)?;
+        let part = depth_part(frame, eye, transparent).filter(|_| has_depth);
         renderer.composite(dominant, &view, Eye::Left, [0, 0], &place, part);
-        over.finish(frame, eye, &surfaces);
+        over.finish(frame, eye, transparent);
         Ok(false)
     }
 }

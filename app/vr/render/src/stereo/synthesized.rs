@@ -6,17 +6,17 @@ use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
 use super::motion::SynthesizedMotion;
 use super::options::{Pipeline, PipelineOptions, StereoOptions};
-use super::overlay::{OverlayPass, OverlaySurfaces};
+use super::overlay::{OverlayPass, depth_part};
 use super::pipeline::Synthesis;
-use crate::view::{DepthResolve, GpuScene, Layout, RenderedDepth, Renderer, Selection, Targets};
-use yoro::eyes::{Eye, EyePair};
+use crate::view::{DepthResolve, GpuScene, Layout, RenderedDepth, Renderer, Targets};
+use yoro::eyes::Eye;
 use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, GlError};
 
-/// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects.
+/// One render with a guard band and one synthesis.
 ///
-/// Bloom is added where an eye is written last: by the synthesis, and where the rendered eye is composited. Near objects
-/// and transparent surfaces are drawn over both in the same passes.
+/// Bloom is added where an eye is written last: by the synthesis, and where the rendered eye is composited.
+/// Transparent surfaces are drawn over both in the same passes.
 pub struct Synthesized {
     gl: Rc<Context>,
     options: StereoOptions,
@@ -74,17 +74,10 @@ impl Synthesized {
     fn composites_first(&self) -> bool {
         self.options.synthesis.pipeline == Pipeline::Paper
     }
-
-    /// Returns the objects that are synthesized.
-    fn selection(&self, pair: &EyePair) -> Selection {
-        let from = pair.middle();
-        self.options.near_field.map_or(Selection::All, |distance| Selection::Farther { from, distance })
-    }
 }
 
 impl StereoMethod for Synthesized {
     fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
-        let has_over = scene.has_transparent() || self.options.near_field.is_some();
         renderer.prepare_over(scene)?;
         let pairs = renderer.depth_resolve == DepthResolve::InColor;
         let is_first = renderer.depth_resolve == DepthResolve::SingleSample;
@@ -103,11 +96,10 @@ impl StereoMethod for Synthesized {
                 },
             }),
         };
-        // With a near field, the source lacks what is near, and its vectors.
-        if self.motion.is_none() && self.options.motion_vectors && self.options.near_field.is_none() {
+        if self.motion.is_none() && self.options.motion_vectors {
             self.motion = Some(SynthesizedMotion::new(&self.gl, pairs)?);
         }
-        for depth in [false, true].into_iter().take(1 + usize::from(has_over)) {
+        for depth in [false, true].into_iter().take(1 + usize::from(scene.has_transparent())) {
             made.synthesizers.get(depth)?;
         }
         Ok(())
@@ -118,14 +110,10 @@ impl StereoMethod for Synthesized {
         let renderer = frame.renderer;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let views = frame.synthesis_views(self.options.guard_band)?;
-        let from = pair.middle();
-        let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
         let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
-        let surfaces = OverlaySurfaces { near, transparent };
-        let selection = self.selection(pair);
         let composites_first = self.composites_first();
         let Some(Made { targets, over, synthesizers, guess }) = &mut self.made else { return Ok(false) };
-        renderer.draw_source(targets, &frame.scene, &views.source, selection)?;
+        renderer.draw_source(targets, &frame.scene, &views.source)?;
         let is_composited = composites_first && renderer.has_composite();
         if is_composited {
             let to = Destination::whole(targets.picture(views.source.size)?);
@@ -138,7 +126,7 @@ impl StereoMethod for Synthesized {
             source = guess.guess(source, &views.warp)?;
         }
         // The other eye first: both are finished in the same samples.
-        let (to, has_depth) = over.begin(frame, other, &surfaces)?;
+        let (to, has_depth) = over.begin(frame, other, transparent)?;
         let synthesis = synthesizers.get(has_depth)?;
         source.bloom = targets
             .bloom
@@ -146,13 +134,12 @@ impl StereoMethod for Synthesized {
             .filter(|_| !is_composited)
             .map(|bloom| Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() });
         synthesis.synthesize(source, &views.warp, &to)?;
-        over.finish(frame, other, &surfaces);
-        // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
+        over.finish(frame, other, transparent);
         frame.measure_depth(&targets.depth(views.source.size, Eye::Left, views.dominant_crop))?;
-        let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
-        let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
+        let (to, has_depth) = over.begin(frame, dominant, transparent)?;
+        let part = depth_part(frame, dominant, transparent).filter(|_| has_depth);
         renderer.composite(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
-        over.finish(frame, dominant, &surfaces);
+        over.finish(frame, dominant, transparent);
         let Some(motion) = &mut self.motion else { return Ok(false) };
         let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
         let rendered = RenderedDepth { depth: &depth, view: &views.source };

@@ -31,7 +31,6 @@ mod vectors;
 #[cfg(test)]
 mod vectors_tests;
 
-pub use cluster::Selection;
 pub(crate) use depth::DepthProgram;
 pub use depth::{DepthCopy, DepthImage, DepthResolve};
 pub(crate) use layout::{Layout, Seam};

@@ -3,7 +3,7 @@
 use glam::{IVec2, Mat3, Vec2, Vec3};
 
 use super::bloom::Shining;
-use super::cluster::{Culler, Selection};
+use super::cluster::Culler;
 use super::depth::DepthImage;
 use super::geometry::{Surfaces, Variant};
 use super::layout::Layout;
@@ -178,21 +178,12 @@ impl Renderer {
         }
     }
 
-    /// Draws near objects and transparent surfaces over the bound framebuffer, which holds an eye and its depth from
-    /// pixel [0, 0] on, and has this many samples in each pixel.
-    pub(crate) fn draw_over(&self, scene: &LitScene, view: &View, near: Option<Selection>, samples: u32) {
-        let variant = Variant::plain(samples);
+    /// Draws the transparent surfaces over the bound framebuffer, which holds an eye and its depth from pixel [0, 0] on, and
+    /// has this many samples in each pixel.
+    pub(crate) fn draw_over(&self, scene: &LitScene, view: &View, samples: u32) {
         let views = std::slice::from_ref(view);
         let light = self.illuminate(Layout::Single, scene, views);
-        if let Some(near) = near {
-            let culler = Culler::selecting(view, near);
-            light.declare(self.gl.pass("near objects")).run(|| {
-                self.draw_opaque(variant, &light, views, &Surfaces::Selected(&culler), |_| {});
-            });
-        }
-        if scene.has_transparent() {
-            self.transparent.run(variant, scene, views, &light);
-        }
+        self.transparent.run(Variant::plain(samples), scene, views, &light);
     }
 
     /// Averages the samples, into `to` if it is given, and takes their nearest depth if `depth` is set. With `ink`,

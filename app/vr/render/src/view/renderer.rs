@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 use super::bloom::{self, BloomPass};
 use super::carry::CarryPass;
-use super::cluster::{Culler, Selection};
+use super::cluster::Culler;
 use super::depth::{DepthImage, DepthResolve};
 use super::geometry::{GeometryPass, Surfaces, Variant};
 use super::layout::Layout;
@@ -176,10 +176,9 @@ impl Renderer {
         targets: &'a mut ViewTargets,
         scene: &GpuScene,
         view: &View,
-        selection: Selection,
     ) -> Result<RenderedView<'a>, GlError> {
         let targets = self.fitting(targets, scene)?;
-        self.draw_source(targets, &scene.into(), view, selection)?;
+        self.draw_source(targets, &scene.into(), view)?;
         self.complete(targets, view)
     }
 
@@ -270,10 +269,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Compiles the programs that draw over a composited eye, with one sample in each pixel, too, and those that composite
-    /// it with its depth.
+    /// Compiles the programs that draw transparent surfaces over a composited eye, with one sample in each pixel, too, and
+    /// those that composite it with its depth.
     pub(crate) fn prepare_over(&mut self, scene: &GpuScene) -> Result<(), GlError> {
-        self.prepare_variant(scene, Variant::plain(1))?;
+        self.transparent.prepare(scene, Variant::plain(1), &self.shading)?;
         let depth = Some(self.depth_resolve == DepthResolve::InColor);
         let plain = Composite { bloom: self.bloom.is_some(), ..Composite::default() };
         self.prepare_composite(plain)?;
@@ -375,10 +374,9 @@ impl Renderer {
         targets: &mut Targets,
         scene: &LitScene,
         view: &View,
-        selection: Selection,
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
-        let culler = Culler::selecting(view, selection);
+        let culler = Culler::of_view(view);
         self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler));
         self.resolve(targets, view, true, self.ink, None)?;
         self.render_bloom(targets, view, Eye::Left);

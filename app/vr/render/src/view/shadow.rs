@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glam::{Mat4, Quat, Vec3};
 
-use super::cluster::{Culler, Selection};
+use super::cluster::Culler;
 use super::scene::{Features, GpuScene};
 use yoro::eyes::Pose;
 use yoro_assets::{Bounds, Viewpoint};
@@ -79,7 +79,7 @@ impl ShadowMap {
         scene.declare(gl.pass("shadow"), 1).write(self.target.images()).run(|| {
             self.target.bind();
             gl.clear(Some(1.0));
-            let culler = Culler::new(Vec3::ZERO, &to_clip, Selection::All);
+            let culler = Culler::new(Vec3::ZERO, &to_clip);
             let mut bound = None;
             for (material, moves, clusters) in scene.opaque() {
                 let features = material.features.and(Features::CUTOUT.or(Features::DIFFUSE_MAP));
