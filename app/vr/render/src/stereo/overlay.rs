@@ -22,9 +22,8 @@ pub(super) fn depth_part(frame: &Frame, eye: Eye, transparent: bool) -> Option<R
 }
 
 /// The images in which an eye is finished. A picture and its depth are written, more is drawn over them, and the average
-/// of the samples is the eye's image: all in one pass, which reads nothing back and stores no sample.
-///
-/// If somebody reads the eye's depth, a pixel has one sample, since samples have no depth in common.
+/// of the samples is the eye's image: all in one pass, which reads nothing back, and stores no sample unless somebody reads
+/// the eye's depth. That is the same in all samples of a pixel, since transparent surfaces write none.
 pub(super) struct OverlayPass {
     gl: Rc<Context>,
     samples: u32,
@@ -32,7 +31,7 @@ pub(super) struct OverlayPass {
     multisample: Option<MultisampleTarget>,
     /// Samples in tiles, and the depth of one eye, which is never written.
     tile: Option<(TileTarget, Option<Texture>)>,
-    /// One sample.
+    /// One sample, or the depth of several.
     image: Option<RenderTarget>,
     target: OverlayTarget,
     /// The place of the current eye.
@@ -90,31 +89,34 @@ impl OverlayPass {
             return Ok((tile.unwrap_or(to.color), true));
         }
         // OpenGL ES averages between equal rectangles only.
-        if !wants_depth && self.samples > 1 && to.color.origin == [0, 0] {
-            self.target = OverlayTarget::Samples;
-            let samples = match &mut self.multisample {
-                Some(samples) => samples,
-                slot => {
-                    let colors = [Format::Rgba8];
-                    let made = MultisampleTarget::new(&self.gl, size, self.samples, &colors, DEPTH, false)?;
-                    slot.insert(made)
-                }
+        let is_sampled = transparent && self.samples > 1 && to.color.origin == [0, 0];
+        if wants_depth || !is_sampled {
+            let image = match &mut self.image {
+                Some(image) => image,
+                slot => slot.insert(RenderTarget::new(
+                    &self.gl,
+                    size,
+                    &[(Format::Rgba8, Filter::Linear)],
+                    Some(DEPTH),
+                )?),
             };
-            samples.resize(size)?;
-            return Ok((samples.part(size), true));
+            image.resize(size)?;
+            if !is_sampled {
+                self.target = OverlayTarget::Image;
+                return Ok((Destination::whole(image), true));
+            }
         }
-        self.target = OverlayTarget::Image;
-        let image = match &mut self.image {
-            Some(image) => image,
-            slot => slot.insert(RenderTarget::new(
-                &self.gl,
-                size,
-                &[(Format::Rgba8, Filter::Linear)],
-                Some(DEPTH),
-            )?),
+        self.target = OverlayTarget::Samples;
+        let samples = match &mut self.multisample {
+            Some(samples) => samples,
+            slot => {
+                let colors = [Format::Rgba8];
+                let made = MultisampleTarget::new(&self.gl, size, self.samples, &colors, DEPTH, false)?;
+                slot.insert(made)
+            }
         };
-        image.resize(size)?;
-        Ok((Destination::whole(image), true))
+        samples.resize(size)?;
+        Ok((samples.part(size), true))
     }
 
     /// Attaches an eye's texture to the tiles; false if there are no such tiles, or no texture.
@@ -143,11 +145,16 @@ impl OverlayPass {
             self.gl.bind_framebuffer(place.framebuffer, place.origin, place.size);
             frame.renderer.draw_over(&frame.scene, &view, samples);
         }
+        let depth_read = self.image.as_ref().filter(|_| frame.wants_depth(eye));
         match (self.target, &self.multisample, &self.tile, &self.image) {
             (OverlayTarget::Samples, Some(samples), ..) => {
                 let pass = self.gl.pass("resolve").in_tile(samples.images());
+                let pass = pass.write(depth_read.map(|image| image.depth().image()));
                 pass.write([frame.to(eye).color.image(Format::Rgba8)]).run(|| {
                     samples.average(0, &frame.to(eye).color);
+                    if let Some(image) = depth_read {
+                        samples.copy_depth(image);
+                    }
                     samples.discard(true, true);
                 });
             }
@@ -156,16 +163,18 @@ impl OverlayPass {
                 let to = &frame.to(eye).color;
                 let pass = self.gl.pass("copy").read("copied", image.color(0));
                 pass.write([to.image(Format::Rgba8)]).run(|| image.copy_color([0, 0], to));
-                let depth = DepthImage {
-                    texture: image.depth(),
-                    origin: [0, 0],
-                    layer: None,
-                    is_pair: false,
-                    convention: DepthConvention::Reversed,
-                };
-                frame.write_depth(eye, &depth);
             }
             _ => {}
+        }
+        if let Some(image) = depth_read {
+            let depth = DepthImage {
+                texture: image.depth(),
+                origin: [0, 0],
+                layer: None,
+                is_pair: false,
+                convention: DepthConvention::Reversed,
+            };
+            frame.write_depth(eye, &depth);
         }
     }
 }
