@@ -587,5 +587,5 @@ pub(crate) fn outputs(bits: YoroOutputFlags) -> Result<Outputs, Failure> {
         return Err(Failure::value(format!("{bits} has bits that are no YORO_OUTPUT_ flags")));
     }
     let has = |bit| bits & bit != 0;
-    Ok(Outputs { depth: has(YORO_OUTPUT_DEPTH), source_map: false, srgb: has(YORO_OUTPUT_SRGB) })
+    Ok(Outputs { depth: has(YORO_OUTPUT_DEPTH), srgb: has(YORO_OUTPUT_SRGB), ..Outputs::default() })
 }
