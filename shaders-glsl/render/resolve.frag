@@ -27,7 +27,15 @@ int at_sample;
 #endif
 #ifdef INK
 #define INK_DEPTH(p) TEXEL(depth_map, p).x
+#ifdef HOLES
+// An eye was synthesized with outlines where alpha is 1, and its holes have none yet. What lies beside a hole counts as the
+// same material, since it is not known.
+#define INK_MATERIAL(p) (TEXEL(color_map, p).a == 1.0 ? id : TEXEL(color_map, p).a)
+#define HAS_INK(color) (color.a == 1.0)
+#else
 #define INK_MATERIAL(p) TEXEL(color_map, p).a
+#define HAS_INK(color) false
+#endif
 #include "include/ink.glsl"
 #endif
 
@@ -36,7 +44,7 @@ int at_sample;
 vec4 sample_color(ivec2 p, float depth) {
     vec4 color = TEXEL(color_map, p);
 #ifdef INK
-    color.rgb *= depth == far_depth ? 1.0 : 1.0 - 0.82 * ink(p, view_size - 1, depth, color.a);
+    color.rgb *= depth == far_depth || HAS_INK(color) ? 1.0 : 1.0 - 0.82 * ink(p, view_size - 1, depth, color.a);
     color.a = luma(color.rgb);
 #endif
     return color;

@@ -53,7 +53,7 @@ pub struct Stereo;
 
 impl Group for Stereo {
     const KEYS: &'static [&'static str] =
-        &["pipeline", "imbuffer", "linear-interpolation", "strict", "guard-band", "near-field", "switch"];
+        &["pipeline", "imbuffer", "linear-interpolation", "strict", "guard-band", "holes", "near-field", "switch"];
 }
 
 /// The settings of stereo frames whose pipelines are compared, each as its name says: none is switched to two renders.

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use crate::choices::{DisplayKind, FrameRate, MSAA, Method, MethodChoice, Performance, Pipeline, Timewarp};
+use crate::choices::{
+    DisplayKind, FrameRate, HoleMethod, MSAA, Method, MethodChoice, Performance, Pipeline, Timewarp,
+};
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
 use crate::value::SettingValue;
@@ -125,6 +127,9 @@ settings! {
     "guard-band" guard_band: Option<GuardBand> = None;
         value_name("none|Npx|METRES");
         auto("1.0; paper: none"),
+    /// yoro: what becomes of pixels that the rendered eye does not show. `rendered` is the best quality; it draws opaque
+    /// surfaces twice, but shades few of them again.
+    "holes" holes: HoleMethod = HoleMethod::default(),
     /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
     "near-field" near_field: Option<f32> = None;
         value_name("METRES");

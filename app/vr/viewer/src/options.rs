@@ -32,6 +32,7 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
     StereoOptions {
         synthesis: PipelineOptions { paper, ..options.synthesis },
         guard_band: settings.guard_band.unwrap_or(options.guard_band),
+        holes: settings.holes,
         near_field: settings.near_field,
         policy: settings.switch.then(NearFieldPolicy::default),
         // A display whose runtime makes frames asks for them.
@@ -55,6 +56,7 @@ mod tests {
                 "linear-interpolation=false",
                 "strict=true",
                 "guard-band=40px",
+                "holes=rendered",
                 "near-field=1",
                 "switch=false",
                 "frame-rate=half",
