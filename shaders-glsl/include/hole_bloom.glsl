@@ -1,4 +1,4 @@
-// The bloom of a fragment in a hole of the synthesized eye: the rendered view's, where its surface lies there.
+// The bloom of a surface in a hole of the synthesized eye: the rendered view's, where the surface lies there.
 #include "include/bloom.glsl"
 
 #ifdef BLOOM
@@ -6,10 +6,10 @@
 uniform vec4 to_view;
 uniform vec2 view_texel;  // 1 / size of the view
 
-vec3 with_view_bloom(vec3 c) {
-    vec2 moved = vec2(to_view.x + to_view.y * gl_FragCoord.z, to_view.z);
+vec3 with_view_bloom(vec3 c, float depth) {
+    vec2 moved = vec2(to_view.x + to_view.y * depth, to_view.z);
     return with_bloom(vec4(c, 0.0), (gl_FragCoord.xy - moved) * view_texel).rgb;
 }
 #else
-#define with_view_bloom(c) (c)
+#define with_view_bloom(c, depth) (c)
 #endif

@@ -38,7 +38,7 @@ void main() {
     vec3 c = tonemap(exposure * aerial(shade(surface, v_position), distance));
 #endif
 #endif
-    c = with_view_bloom(c);
+    c = with_view_bloom(c, gl_FragCoord.z);
     CARRY_DEPTH(gl_FragCoord.z)
 #if defined(CUTOUT) && defined(MULTISAMPLE)
     out_color = vec4(c, coverage(color.a));

@@ -1,6 +1,7 @@
 // Averages the samples of a pixel and takes their nearest depth, which is reversed or not. With INK outlines are drawn
 // first, in each sample: a sample is compared with the same sample of its neighbours.
 #include "include/color.glsl"
+#include "include/hole_bloom.glsl"
 
 #if SAMPLES > 1
 uniform highp sampler2DMS color_map;
@@ -23,7 +24,7 @@ uniform ivec2 view_size;
 layout(location = 0) out vec4 out_color;
 
 #if SAMPLES > 1
-int at_sample;
+int at_sample = 0;
 #endif
 #ifdef INK
 #define INK_DEPTH(p) TEXEL(depth_map, p).x
@@ -50,6 +51,15 @@ vec4 sample_color(ivec2 p, float depth) {
     return color;
 }
 
+#ifdef HOLES
+bool is_hole(ivec2 p) {
+#if SAMPLES > 1
+    at_sample = 0;
+#endif
+    return !HAS_INK(TEXEL(color_map, p));
+}
+#endif
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy) - view_origin;
 #if SAMPLES > 1
@@ -64,6 +74,13 @@ void main() {
 #else
     float nearest = nearer * TEXEL(depth_map, p).x;
     out_color = sample_color(p, nearer * nearest);
+#endif
+#ifdef HOLES
+    // Light spreads over outlines, too.
+    if (is_hole(p)) {
+        out_color.rgb = with_view_bloom(out_color.rgb, nearer * nearest);
+        out_color.a = luma(out_color.rgb);
+    }
 #endif
 #ifdef WRITE_DEPTH
     gl_FragDepth = nearer * nearest;

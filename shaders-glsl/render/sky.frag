@@ -21,7 +21,7 @@ layout(location = 0) out vec4 out_color;
 
 void main() {
     vec3 ray = RAYS * vec3(1.0, (gl_FragCoord.xy - view_origin) * pixel_extent);
-    vec3 c = with_view_bloom(tonemap(exposure * background(normalize(ray))));
+    vec3 c = with_view_bloom(tonemap(exposure * background(normalize(ray))), gl_FragCoord.z);
     out_color = vec4(c, luma(c));
     CARRY_DEPTH(0.0)
 }

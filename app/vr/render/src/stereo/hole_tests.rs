@@ -93,6 +93,7 @@ fn holes_have_bloom_and_outlines() {
     for (style, settings) in [
         (ShadingStyle::Realistic, RenderSettings { bloom: true, ..smooth() }),
         (ShadingStyle::Anime, smooth()),
+        (ShadingStyle::Anime, RenderSettings { bloom: true, ..smooth() }),
         (ShadingStyle::Anime, local()),
     ] {
         let mut rig = Rig::of(head.gl(), &settings, of_style(style));

@@ -178,14 +178,13 @@ impl StereoMethod for Synthesized {
             .map(|bloom| Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() });
         // The other eye first: both are finished in the same samples.
         let vectors = renders_holes && frame.to(other).motion.is_some();
-        let holes = renders_holes && inked.is_none();
-        let other_surfaces = OverlaySurfaces { holes, vectors, ..surfaces };
+        let other_surfaces = OverlaySurfaces { holes: renders_holes, vectors, ..surfaces };
         let (to, has_depth) = over.begin(frame, other, &other_surfaces)?;
         if renders_holes {
             let synthesis = synthesizers.get(Kind::OpenHoles)?;
             let samples = over.samples();
             let rendered = Rendered { source, targets, views: &views, selection };
-            rendered.render_other(frame, synthesis.as_mut(), inked.as_mut(), (&to, samples, has_depth))?;
+            rendered.render_other(frame, synthesis.as_mut(), inked.as_mut(), (&to, samples))?;
         } else {
             let kind = if has_depth { Kind::ColorDepth } else { Kind::Color };
             synthesizers.get(kind)?.synthesize(source, &views.warp, &to)?;
@@ -218,13 +217,13 @@ struct Rendered<'a> {
 }
 
 impl Rendered<'_> {
-    /// Synthesizes the other eye into a place with this many samples, and with depth or without, and renders its holes.
+    /// Synthesizes the other eye into a place with this many samples, and renders its holes.
     fn render_other(
         &self,
         frame: &Frame,
         synthesis: &mut dyn Synthesis,
         inked: Option<&mut InkedHoles>,
-        (to, samples, has_depth): (&Destination, u32, bool),
+        (to, samples): (&Destination, u32),
     ) -> Result<(), GlError> {
         let (renderer, warp) = (frame.renderer, &self.views.warp);
         let view = frame.pair.view(frame.pair.dominant.other());
@@ -238,7 +237,7 @@ impl Rendered<'_> {
         let Some(inked) = inked else { return draw(to, samples, None) };
         let (place, samples) = inked.fit(view.size)?;
         draw(&place, samples, Some(inked))?;
-        renderer.ink_holes(inked, &view, frame.scene.detail(&view), to, has_depth);
+        renderer.ink_holes(inked, &view, frame.scene.detail(&view), to, &source);
         Ok(())
     }
 }

@@ -74,7 +74,11 @@ impl Renderer {
         pass.in_tile([Format::Rgba8, MARKED_DEPTH].map(image)).run(|| {
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
             let culler = Culler::selecting(view, selection);
-            let bloom = |program: &Program| self.set_hole_bloom(program, source);
+            let bloom = |program: &Program| {
+                if !self.ink {
+                    self.set_hole_bloom(program, source);
+                }
+            };
             self.draw_opaque(variant, &light, views, &Surfaces::Selected(&culler), bloom);
             self.draw_sky(variant, &light, views, bloom);
         });
@@ -91,15 +95,14 @@ impl Renderer {
             .set("view_texel", 1.0 / size);
     }
 
-    /// Averages an eye in its own samples into `to`, with outlines in its holes, and with its nearest depth if `depth` is
-    /// set.
+    /// Averages an eye in its own samples into `to`, with outlines and bloom in its holes, and with its nearest depth.
     pub(crate) fn ink_holes(
         &self,
         from: &InkedHoles,
         view: &View,
         detail: f32,
         to: &Destination,
-        depth: bool,
+        source: &HoleSource,
     ) {
         let variant = Resolve { samples: from.samples, ink: true, depth: true, holes: true, layer: false };
         let Some((_, program)) = self.resolve.iter().find(|(made, _)| *made == variant) else { return };
@@ -109,11 +112,11 @@ impl Renderer {
             samples: from.samples,
         });
         let pass = self.gl.pass("resolve").read("color_map", color).read("depth_map", nearest);
-        pass.write([to.image(Format::Rgba8)]).run(|| {
-            self.gl.overwrite(to, 1, depth);
-            let state = if depth { RasterState::SCREEN_DEPTH } else { RasterState::SCREEN };
-            self.gl.set_raster_state(&state);
+        pass.in_tile([Format::Rgba8, MARKED_DEPTH].map(|format| to.image(format))).run(|| {
+            self.gl.overwrite(to, 1, true);
+            self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
             from.bind_textures(program.bind());
+            self.set_hole_bloom(program, source);
             self.draw_resolve(program, Layout::Single, view, detail, None);
         });
     }

@@ -329,7 +329,8 @@ impl Renderer {
         if variant.reprojected && self.depth_resolve == DepthResolve::InColor {
             shading.push(("DEPTH_PAIRS", String::new()));
         }
-        let holes = variant.holes && self.bloom.is_some();
+        // Outlines come before bloom.
+        let holes = variant.holes && self.bloom.is_some() && !self.ink;
         shading.extend(holes.then(|| ("BLOOM", String::new())));
         self.geometry.push(GeometryPass::new(gl, scene, variant, &shading)?);
         if !variant.reprojected {
@@ -353,6 +354,7 @@ impl Renderer {
                 ("WRITE_DEPTH", variant.depth),
                 ("LAYER", variant.layer),
                 ("HOLES", variant.holes),
+                ("BLOOM", variant.holes && self.bloom.is_some()),
             ];
             defines.extend(flags.into_iter().filter(|(_, on)| *on).map(|(name, _)| (name, String::new())));
             let program = Program::new(&self.gl, ShaderSource::Screen("render/resolve.frag"), &defines)?;
