@@ -11,7 +11,9 @@ use yoro::synthesis::{HoleMark, Holes};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
-use yoro_render::stereo::{HoleMethod, ImBufferSize, Method, Paper, PaperOptions, StereoOptions, StereoSession};
+use yoro_render::stereo::{
+    HoleMethod, ImBufferSize, Method, Paper, PaperOptions, StereoOptions, StereoSession,
+};
 use yoro_render::{DepthCopy, GpuScene, PreparedScene, RenderSettings, Renderer};
 use yoro_shaders::{Assembled, MissingFile};
 use yoro_test_support::record::Recorder;
@@ -60,7 +62,8 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         Motion::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
     }
     for mark in [HoleMark::Stencil, HoleMark::Depth] {
-        let outputs = Outputs { depth: mark == HoleMark::Stencil, holes: Holes::Open(mark), ..Outputs::default() };
+        let outputs =
+            Outputs { depth: mark == HoleMark::Stencil, holes: Holes::Open(mark), ..Outputs::default() };
         Gather::new(gl, &Options::default(), outputs)?;
     }
     Composer::new(gl, GlState::Leave, false)?;

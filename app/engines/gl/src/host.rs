@@ -354,17 +354,21 @@ impl Context {
     }
 
     /// Clears depth and stencil in a rectangle of the bound framebuffer, for [`Context::marking_stencil`] or
-    /// [`Context::marking_depth`]: depth to the farthest, stencil to 0. Depth is written since
+    /// [`Context::marking_depth`]: depth to the farthest, and, if it is the mark, stencil to 0. Depth is written since
     /// [`Context::begin_synthesis`].
-    pub fn clear_marks(&self, to: &Destination, farthest: f32) {
+    pub fn clear_marks(&self, to: &Destination, farthest: f32, stencil: bool) {
         let (gl, host) = (self.raw(), &self.host);
         let ([x, y], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
         // SAFETY: state calls with valid enums; what the framebuffer lacks is not cleared.
         unsafe {
             host.set_scissor_box(gl, [x, y, w, h]);
             host.set_switch(gl, glow::SCISSOR_TEST, true);
-            gl.stencil_mask(0xff);
-            gl.clear_buffer_depth_stencil(glow::DEPTH_STENCIL, 0, farthest, 0);
+            if stencil {
+                gl.stencil_mask(0xff);
+                gl.clear_buffer_depth_stencil(glow::DEPTH_STENCIL, 0, farthest, 0);
+            } else {
+                gl.clear_buffer_f32_slice(glow::DEPTH, 0, &[farthest]);
+            }
             host.set_switch(gl, glow::SCISSOR_TEST, false);
         }
     }

@@ -217,7 +217,7 @@ fn draw_open(
 ) {
     gl.overwrite(target, outputs.draw_buffers() as usize, false);
     let [nearest, farthest] = convention.planes();
-    gl.clear_marks(target, farthest);
+    gl.clear_marks(target, farthest, mark == HoleMark::Stencil);
     gl.set_depth_write(outputs.depth || mark == HoleMark::Depth);
     match mark {
         HoleMark::Stencil => gl.marking_stencil(|| gl.draw_screen()),

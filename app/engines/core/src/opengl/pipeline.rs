@@ -54,7 +54,7 @@ pub type Motion = Pipeline<MotionWarp>;
 /// | scissor test (as the viewport), stencil and depth test, face culling | off; depth test on for the target if depth is written | off |
 /// | depth function, depth mask, depth range (as the viewport) | `ALWAYS`, on, 0 to 1 | as set |
 /// | with open holes: scissor box (as the viewport) | the target's rectangle | as set |
-/// | with open holes: stencil function, operations and write mask, of both faces | `ALWAYS` 1, `REPLACE`, all bits | as set |
+/// | with holes marked by stencil: stencil function, operations and write mask, of both faces | `ALWAYS` 1, `REPLACE`, all bits | as set |
 /// | blending and colour mask, of draw buffer 0 and, with a source map, 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | as set |
 /// | dithering, polygon offset for filling, rasterizer discard, primitive restart (fixed index) | off | off |
 /// | alpha to coverage, sample coverage; sample mask (ES 3.1) | off | off |

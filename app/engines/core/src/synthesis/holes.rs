@@ -11,7 +11,7 @@ pub enum Holes {
     /// something of its background, too. They are about 1 to 5 % of an eye.
     ///
     /// The target has a depth attachment, and for [`HoleMark::Stencil`] stencil. In its rectangle a call clears depth to the
-    /// farthest and stencil to 0, and then marks all pixels that it writes. Colour and source map of open pixels are undefined.
+    /// farthest, and stencil to 0 if that is the mark, and then marks all pixels that it writes. Colour and source map of open pixels are undefined.
     Open(HoleMark),
 }
 

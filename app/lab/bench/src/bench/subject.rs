@@ -7,7 +7,8 @@ use super::process;
 use yoro::eyes::{EyePair, EyesError, FoveationLevel, Gaze, StereoViews};
 use yoro_gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
-    EyeTarget, FrameReport, FrameTargets, Method, StereoError, StereoFrame, StereoOptions, StereoSession,
+    EyeTarget, FrameReport, FrameTargets, HoleMethod, Method, StereoError, StereoFrame, StereoOptions,
+    StereoSession,
 };
 use yoro_render::{PreparedScene, RenderSettings};
 
@@ -67,11 +68,11 @@ impl Subject {
     /// As [`Subject::new`].
     pub fn with_motion(
         gl: &Rc<Context>,
-        method: Method,
+        (method, holes): (Method, HoleMethod),
         settings: &RenderSettings,
         foveation: FoveationLevel,
     ) -> Result<Subject, GlError> {
-        let options = StereoOptions { policy: None, motion_vectors: true, ..StereoOptions::default() };
+        let options = StereoOptions { policy: None, motion_vectors: true, holes, ..StereoOptions::default() };
         Ok(Subject { foveation, ..Subject::new(gl, method, settings, &options)? })
     }
 
