@@ -59,6 +59,7 @@ static SYNTHESIS: &[File] = embed![
 static APP: &[File] = embed![
     "include/carried.glsl",
     "include/hdr.glsl",
+    "include/hole_bloom.glsl",
     "include/imbuffer.glsl",
     "include/ink.glsl",
     "include/material.glsl",
@@ -79,6 +80,7 @@ static APP: &[File] = embed![
     "render/composite.frag",
     "render/depth_copy.frag",
     "render/depth_write.frag",
+    "render/fill.frag",
     "render/forward.frag",
     "render/geometry.vert",
     "render/keep_sample.frag",

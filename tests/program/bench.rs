@@ -44,6 +44,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
         "mono",
         "yoro-gather",
         "yoro-paper",
+        "yoro-holes-rendered",
     ] {
         // Each contender is either measured or skipped with a reason.
         let rows = whole.iter().filter(|r| r["contender"] == contender);
@@ -64,6 +65,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
         values.iter().sum::<f64>() / values.len() as f64
     };
     assert!(mean("yoro-gather", "psnr") > mean("mono", "psnr") + 3.0);
+    assert!(mean("yoro-holes-rendered", "psnr") > mean("yoro-gather", "psnr"));
     assert!(mean("yoro-gather", "flip") < mean("mono", "flip"));
     assert!(mean("yoro-paper", "visible_psnr") > mean("yoro-paper", "hole_psnr"));
     assert!(mean("yoro-gather", "texture_mib") > mean("mono", "texture_mib"));
@@ -172,7 +174,13 @@ fn the_other_experiments_are_measured_and_reported() {
     assert_eq!(who("canted eyes"), ["same-image", "gather-parallel-eyes", "any-view"]);
     assert_eq!(who("walk, 4 late"), ["same-image", "rotation", "any-view"]);
     for label in ["still", "walk, foveation medium, 90 degrees"] {
-        let runtime = ["runtime-two-eyes", "runtime-one-eye", "runtime-made-vectors", "rotation"];
+        let runtime = [
+            "runtime-two-eyes",
+            "runtime-one-eye",
+            "runtime-one-eye-holes-rendered",
+            "runtime-made-vectors",
+            "rotation",
+        ];
         let rest = ["yoro-full-rate", "same-image", "conventional"];
         assert_eq!(who(label), [&runtime[..], &rest].concat(), "{label}");
     }

@@ -13,6 +13,7 @@ use yoro::opengl::{
     PassTime, Profiling, Source,
 };
 use yoro::synthesis::backend::WarpKind;
+use yoro::synthesis::{HoleMark, Holes};
 
 use crate::context::{
     Backend, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, YoroTimes, create, enter_as,
@@ -25,7 +26,8 @@ use crate::result::{
     YoroResult,
 };
 use crate::types::{
-    Kind, YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroOutputFlags, YoroWarpKind, other_kind, warp_kind,
+    Kind, YORO_OUTPUT_DEPTH, YORO_OUTPUT_OPEN_DEPTH, YORO_OUTPUT_OPEN_STENCIL, YORO_OUTPUT_SRGB,
+    YoroOutputFlags, YoroWarpKind, other_kind, warp_kind,
 };
 use crate::versioned::{self, versioned};
 use crate::views::{YoroWarp, read_warp};
@@ -159,7 +161,7 @@ pub struct YoroGlImages {
     /// depth belongs to no surface, and causes halos.
     pub depth_texture: u32,
     /// The framebuffer to draw into, or 0 for the window's. Its first colour attachment is written, and with
-    /// YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
+    /// YORO_OUTPUT_DEPTH or an OPEN flag its depth attachment, with stencil for YORO_OUTPUT_OPEN_STENCIL. None of the textures above may be attached to it.
     pub framebuffer: u32,
     /// First column of the synthesized image in the framebuffer.
     pub x: u32,
@@ -583,9 +585,19 @@ impl Backend for Gl {
 }
 
 pub(crate) fn outputs(bits: YoroOutputFlags) -> Result<Outputs, Failure> {
-    if bits & !(YORO_OUTPUT_DEPTH | YORO_OUTPUT_SRGB) != 0 {
+    let open = YORO_OUTPUT_OPEN_STENCIL | YORO_OUTPUT_OPEN_DEPTH;
+    if bits & !(YORO_OUTPUT_DEPTH | YORO_OUTPUT_SRGB | open) != 0 {
         return Err(Failure::value(format!("{bits} has bits that are no YORO_OUTPUT_ flags")));
     }
     let has = |bit| bits & bit != 0;
-    Ok(Outputs { depth: has(YORO_OUTPUT_DEPTH), source_map: false, srgb: has(YORO_OUTPUT_SRGB) })
+    let holes = match (has(YORO_OUTPUT_OPEN_STENCIL), has(YORO_OUTPUT_OPEN_DEPTH)) {
+        (false, false) => Holes::Filled,
+        (true, false) => Holes::Open(HoleMark::Stencil),
+        (false, true) if !has(YORO_OUTPUT_DEPTH) => Holes::Open(HoleMark::Depth),
+        _ => {
+            let what = "YORO_OUTPUT_OPEN_DEPTH goes neither with YORO_OUTPUT_DEPTH nor with YORO_OUTPUT_OPEN_STENCIL";
+            return Err(Failure::value(what));
+        }
+    };
+    Ok(Outputs { depth: has(YORO_OUTPUT_DEPTH), srgb: has(YORO_OUTPUT_SRGB), holes, ..Outputs::default() })
 }

@@ -318,7 +318,11 @@ fn impossible_contexts_return_their_codes() {
     };
     assert_eq!(create(&YoroGlInfo { struct_size: 5, ..info }), YORO_ERROR_STRUCT_SIZE);
     assert_eq!(create(&YoroGlInfo { composes: 2, ..info }), YORO_ERROR_VALUE);
-    assert_eq!(create(&YoroGlInfo { outputs: 8, ..info }), YORO_ERROR_VALUE);
+    assert_eq!(create(&YoroGlInfo { outputs: 16, ..info }), YORO_ERROR_VALUE);
+    for other in [YORO_OUTPUT_DEPTH, YORO_OUTPUT_OPEN_STENCIL] {
+        let outputs = YORO_OUTPUT_OPEN_DEPTH | other;
+        assert_eq!(create(&YoroGlInfo { outputs, ..info }), YORO_ERROR_VALUE);
+    }
     assert_eq!(create(&YoroGlInfo { state: 2, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { check: 2, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { loader: None, ..info }), YORO_ERROR_NULL);
@@ -333,7 +337,9 @@ fn impossible_contexts_return_their_codes() {
         assert_eq!(yoro_destroy(null_mut()), YORO_OK);
     }
     let _headless = Headless::open(Backend::Egl).unwrap();
-    assert_eq!(create(&YoroGlInfo { outputs: YORO_OUTPUT_DEPTH, ..info }), YORO_OK);
+    for outputs in [YORO_OUTPUT_DEPTH, YORO_OUTPUT_DEPTH | YORO_OUTPUT_OPEN_STENCIL, YORO_OUTPUT_OPEN_DEPTH] {
+        assert_eq!(create(&YoroGlInfo { outputs, ..info }), YORO_OK);
+    }
 }
 
 #[test]

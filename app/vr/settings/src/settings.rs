@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use crate::choices::{DisplayKind, FrameRate, MSAA, Method, MethodChoice, Performance, Pipeline, Timewarp};
+use crate::choices::{
+    DisplayKind, FrameRate, HoleMethod, MSAA, Method, MethodChoice, Performance, Pipeline, Timewarp,
+};
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
 use crate::value::{SettingValue, shown};
@@ -99,6 +101,9 @@ settings! {
     "guard-band" guard_band: Option<GuardBand> = None;
         value_name("none|Npx|METRES");
         auto("1.0; paper: none"),
+    /// yoro: what becomes of pixels that the rendered eye does not show. `rendered` is the best quality; it draws opaque
+    /// surfaces twice, but shades few of them again.
+    "holes" holes: HoleMethod = HoleMethod::default(),
     /// Switch to two real renders while most of the view is too near.
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),

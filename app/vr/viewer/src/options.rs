@@ -32,6 +32,7 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
     StereoOptions {
         synthesis: PipelineOptions { paper, ..options.synthesis },
         guard_band: settings.guard_band.unwrap_or(options.guard_band),
+        holes: settings.holes,
         policy: settings.switch.then(NearFieldPolicy::default),
         // A display whose runtime makes frames asks for them.
         motion_vectors: false,
@@ -54,6 +55,7 @@ mod tests {
                 "linear-interpolation=false",
                 "strict=true",
                 "guard-band=40px",
+                "holes=rendered",
                 "switch=false",
                 "frame-rate=half",
             ],

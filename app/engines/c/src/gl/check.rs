@@ -89,6 +89,9 @@ fn check_framebuffer(
     if outputs.depth && framebuffer.depth == Attachment::None {
         return Err(wrong("the framebuffer has no depth attachment, which YORO_OUTPUT_DEPTH writes"));
     }
+    if outputs.holes.is_open() && framebuffer.depth == Attachment::None {
+        return Err(wrong("the framebuffer has no depth attachment, which tells open pixels from others"));
+    }
     for &(texture, what) in textures {
         if [framebuffer.color, framebuffer.depth].contains(&Attachment::Texture(texture)) {
             return Err(wrong(format!(

@@ -7,7 +7,8 @@ use super::process;
 use yoro::eyes::{EyePair, EyesError, FoveationLevel, Gaze, StereoViews};
 use yoro_gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
-    EyeTarget, FrameReport, FrameTargets, Method, StereoError, StereoFrame, StereoOptions, StereoSession,
+    EyeTarget, FrameReport, FrameTargets, HoleMethod, Method, StereoError, StereoFrame, StereoOptions,
+    StereoSession,
 };
 use yoro_render::{PreparedScene, RenderSettings};
 
@@ -54,12 +55,12 @@ impl Subject {
     /// As [`Subject::new`].
     pub fn foveated(
         gl: &Rc<Context>,
-        method: Method,
+        (method, holes): (Method, HoleMethod),
         settings: &RenderSettings,
         foveation: FoveationLevel,
         motion_vectors: bool,
     ) -> Result<Subject, GlError> {
-        let options = StereoOptions { policy: None, motion_vectors, ..StereoOptions::default() };
+        let options = StereoOptions { policy: None, motion_vectors, holes, ..StereoOptions::default() };
         Ok(Subject { foveation, ..Subject::new(gl, method, settings, &options)? })
     }
 

@@ -121,6 +121,7 @@ impl StereoSession {
     ) -> Result<StereoSession, GlError> {
         let method = choice.first();
         settings.supports(method, gl.capabilities())?;
+        options.check(method)?;
         let is_auto = choice == MethodChoice::Auto;
         let mut session = StereoSession {
             gl: gl.clone(),
@@ -354,11 +355,13 @@ impl LayerMethods {
         near: Option<&mut NearSwitch>,
     ) -> Result<bool, StereoError> {
         let shown = views.inset.map(|_| &views.shown);
-        let mut render = |method: &mut Box<dyn StereoMethod>, layer, to, near| {
+        let mut render = |method: &mut Box<dyn StereoMethod>, layer, to, near, fills_holes| {
             method.prepare(&mut scene.renderer, &scene.scene)?;
-            method.render(&Frame::new(&scene.renderer, &scene.scene, layer, shown, to)?.measured_by(near))
+            let frame = Frame::new(&scene.renderer, &scene.scene, layer, shown, to)?;
+            method.render(&frame.measured_by(near).with_filled_holes(fills_holes))
         };
-        let has_motion = render(&mut self.wide, &views.wide, &to.wide, near)?;
+        // Where an inset is seen best, the layer around it is seen worst.
+        let has_motion = render(&mut self.wide, &views.wide, &to.wide, near, views.inset.is_some())?;
         if let Some((layer, to)) = views.inset.as_ref().zip(to.inset.as_ref()) {
             let inset = match self.inset.take() {
                 Some(inset) => inset,
@@ -368,7 +371,7 @@ impl LayerMethods {
                     super::create(&self.gl, self.method, &options)?
                 }
             };
-            render(self.inset.insert(inset), layer, to, None)?;
+            render(self.inset.insert(inset), layer, to, None, false)?;
         }
         Ok(has_motion)
     }

@@ -7,7 +7,7 @@
 
 use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
-use super::overlay::{OverlayPass, depth_part};
+use super::overlay::{OverlayPass, OverlaySurfaces};
 use crate::view::{GpuScene, Layout, Renderer, Reprojection, Targets};
 use yoro::eyes::{DisparityMap, Eye, GuardBand};
 
@@ -31,8 +31,11 @@ impl StereoMethod for ShadingReprojection {
         renderer.prepare_reprojected(scene)?;
         if self.made.is_none() {
             let targets = || renderer.targets(Layout::Single);
-            self.made =
-                Some(Made { dominant: targets()?, second: targets()?, over: OverlayPass::new(renderer)? });
+            self.made = Some(Made {
+                dominant: targets()?,
+                second: targets()?,
+                over: OverlayPass::new(renderer, false)?,
+            });
         }
         Ok(())
     }
@@ -65,10 +68,11 @@ impl StereoMethod for ShadingReprojection {
             frame.write_depth(other, &second.depth(view.size, Eye::Left, [0, 0]));
         }
         let transparent = frame.scene.is_transparent_in(&view);
-        let (place, has_depth) = over.begin(frame, eye, transparent)?;
-        let part = depth_part(frame, eye, transparent).filter(|_| has_depth);
+        let surfaces = OverlaySurfaces { transparent, ..OverlaySurfaces::default() };
+        let (place, has_depth) = over.begin(frame, eye, &surfaces)?;
+        let part = surfaces.depth_part(frame, eye).filter(|_| has_depth);
         renderer.composite(dominant, &view, Eye::Left, [0, 0], &place, part);
-        over.finish(frame, eye, transparent);
+        over.finish(frame, eye, &surfaces);
         Ok(false)
     }
 }

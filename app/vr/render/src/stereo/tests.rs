@@ -14,7 +14,10 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose, Stere
 use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_assets::{Alpha, Material, Model, Motion, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Context, Declaration, Destination, Draw, Format, Observer, Profiling, RenderTarget};
+use yoro_gl::{
+    Context, Declaration, Destination, Draw, Filter, Format, Observer, Profiling, Program, RasterState,
+    RenderTarget, ShaderSource,
+};
 
 const SIZE: [u32; 2] = [160, 120];
 
@@ -198,6 +201,18 @@ pub(super) fn equal_share(a: &[u8], b: &[u8]) -> f64 {
     equal.count() as f64 / (a.len() / 4) as f64
 }
 
+/// Returns the distances in metres of an eye's depth.
+pub(super) fn distances(gl: &Rc<Context>, depth: &RenderTarget, pair: &EyePair) -> Vec<f32> {
+    let formats = [(Format::R32F, Filter::Nearest)];
+    let copy = RenderTarget::new(gl, pair.size, &formats, None).unwrap();
+    let program = Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
+    copy.overwrite();
+    gl.set_raster_state(&RasterState::SCREEN);
+    program.bind().texture("depth_map", 0, depth.depth().raw());
+    gl.draw_screen();
+    copy.read_rgba32f(0, [0, 0], pair.size).iter().map(|texel| pair.depth.distance(texel[0])).collect()
+}
+
 #[test]
 fn every_seam_separates_the_eyes() {
     for backend in [Backend::Egl, Backend::Osmesa] {
@@ -327,7 +342,7 @@ fn passes_declare_what_they_read_and_write() {
 }
 
 /// Settings with several samples in each pixel.
-fn smooth() -> RenderSettings {
+pub(super) fn smooth() -> RenderSettings {
     RenderSettings { msaa: 4, ..local() }
 }
 

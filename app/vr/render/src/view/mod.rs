@@ -6,6 +6,7 @@ mod cluster;
 mod coverage;
 mod depth;
 mod geometry;
+mod holes;
 mod layout;
 mod light_tiles;
 mod lights;
@@ -33,6 +34,7 @@ mod vectors_tests;
 
 pub(crate) use depth::DepthProgram;
 pub use depth::{DepthCopy, DepthImage, DepthResolve};
+pub(crate) use holes::{HoleSource, InkedHoles, MARKED_DEPTH};
 pub(crate) use layout::{Layout, Seam};
 pub(crate) use lit::LitScene;
 pub(crate) use passes::Reprojection;

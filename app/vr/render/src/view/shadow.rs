@@ -8,9 +8,7 @@ use super::cluster::Culler;
 use super::scene::{Features, GpuScene};
 use yoro::eyes::Pose;
 use yoro_assets::{Bounds, Viewpoint};
-use yoro_gl::{
-    Blend, Context, DepthTest, Format, GlError, Pass, Program, RasterState, RenderTarget, ShaderSource,
-};
+use yoro_gl::{Context, DepthTest, Format, GlError, Pass, Program, RasterState, RenderTarget, ShaderSource};
 
 /// Distance from the viewpoints, in metres, within which a large scene has shadows.
 const REACH: f32 = 60.0;
@@ -91,8 +89,11 @@ impl ShadowMap {
                     &programs.colored
                 };
                 // Rooms are often shells that face inwards; the sun should pass through their roofs.
-                let state =
-                    RasterState { depth: DepthTest::Less, blend: Blend::Off, cull: !material.double_sided };
+                let state = RasterState {
+                    depth: DepthTest::Less,
+                    cull: !material.double_sided,
+                    ..RasterState::SCREEN
+                };
                 gl.set_raster_state(&state);
                 program.bind().set("eye", Vec3::ZERO).set("eye_to_clip", to_clip);
                 scene.set_material(program, material);

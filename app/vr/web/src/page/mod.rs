@@ -104,14 +104,15 @@ impl Page {
     }
 
     /// Returns the defaults of the choices that all programs have, and the largest distance between the eyes, as JSON:
-    /// `{"method", "msaa", "dominant", "ipd", "maxIpd"}`. Distances are in millimetres.
+    /// `{"method", "msaa", "holes", "dominant", "ipd", "maxIpd"}`. Distances are in millimetres.
     #[wasm_bindgen(js_name = defaultChoices)]
     pub fn default_choices() -> String {
-        let Settings { method, msaa, dominant, ipd, .. } = Settings::default();
+        let Settings { method, msaa, holes, dominant, ipd, .. } = Settings::default();
         let millimetres = |ipd: Ipd| (ipd.metres() * 1e3).round();
         serde_json::json!({
             "method": method,
             "msaa": msaa,
+            "holes": holes,
             "dominant": dominant,
             "ipd": millimetres(ipd),
             "maxIpd": millimetres(Ipd::MAX),

@@ -19,7 +19,7 @@ use yoro::eyes::{Composition, EyePair, EyesError, Foveation, FoveationLevel};
 use yoro_files::interrupt;
 use yoro_gl::{Context, GlError};
 use yoro_metrics::{FlickerMeter, SsimWindow, psnr_where, ssim_where};
-use yoro_render::stereo::{Method, StereoError, StereoFrame};
+use yoro_render::stereo::{HoleMethod, Method, StereoError, StereoFrame};
 use yoro_render::{DepthReader, PreparedScene, ViewTargets};
 use yoro_report::stats::{geometric_mean, mean};
 use yoro_report::text::fixed;
@@ -205,7 +205,7 @@ impl Foveator {
                     level => format!("{name}-{}", level.name()),
                 },
                 is_synthesis: method == Method::Synthesized,
-                subject: Subject::foveated(gl, method, &job.render, level, false)?,
+                subject: Subject::foveated(gl, (method, HoleMethod::default()), &job.render, level, false)?,
             })
         });
         made.collect()
