@@ -17,6 +17,17 @@ const NEAR_SHARES = [0.5, 0.35];
 /** Frames between two looks at what is near: with synthesis, and without, where a look costs an eye's draw calls. */
 const LOOKS = [12, 45];
 
+/** Has the renderer give other answers while something is drawn. */
+function answering(renderer, answers, draw) {
+  const own = {};
+  for (const name in answers) own[name] = renderer[name];
+  try {
+    return draw(Object.assign(renderer, answers));
+  } finally {
+    Object.assign(renderer, own);
+  }
+}
+
 const isOfOneEye = (camera) => camera?.isPerspectiveCamera && !camera.isArrayCamera;
 
 /**
@@ -39,6 +50,7 @@ export class StereoSynthesis {
   /** The eyes on a canvas. */
   #pair;
   #size = new Vector2();
+  #viewports = [0, 1, 2].map(() => new Vector4());
   #between = new Matrix4();
   /** What is made for the present kind of target. */
   #made = '';
@@ -125,8 +137,9 @@ export class StereoSynthesis {
     scene.matrixWorldAutoUpdate = false;
     this.#isBusy = true;
     try {
-      this.#frame(scene, camera);
+      this.#restoring(() => this.#frame(scene, camera));
     } finally {
+      this.#timer.end();
       this.#isBusy = false;
       scene.matrixWorldAutoUpdate = matrixWorldAutoUpdate;
     }
@@ -189,12 +202,14 @@ export class StereoSynthesis {
     const views = this.#find(eyes);
     if (!views) return false;
     const passes = this.#given ??= new Passes(renderer, false);
-    this.#aside(() => passes.prepare(views, color, depth, samples > 0));
-    renderer.setRenderTarget(target);
     this.#assign(passes);
-    this.#once(() => {
-      renderer.xr.enabled = false;
-      renderer.render(passes.eyes, eyes);
+    this.#restoring(() => {
+      this.#aside(() => passes.prepare(views, color, depth, samples > 0));
+      renderer.setRenderTarget(target);
+      this.#once(() => {
+        renderer.xr.enabled = false;
+        renderer.render(passes.eyes, eyes);
+      });
     });
     return true;
   }
@@ -242,6 +257,22 @@ export class StereoSynthesis {
     this.#isNear = false;
     this.#chooser.sceneChanged();
   };
+
+  /** Draws, and restores what the renderer draws to: three itself leaves its viewport on the right eye's half. */
+  #restoring(draw) {
+    const { renderer } = this;
+    const [viewport, current, now] = this.#viewports;
+    renderer.getViewport(viewport);
+    renderer.getCurrentViewport(current);
+    const target = [renderer.getRenderTarget(), renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel()];
+    try {
+      draw();
+    } finally {
+      renderer.setRenderTarget(...target);
+      // That of a render target may have been set by `setViewport`, too.
+      if (!renderer.getCurrentViewport(now).equals(current)) renderer.setViewport(viewport);
+    }
+  }
 
   /** Draws, and restores what the user has set. */
   #once(draw) {
@@ -291,7 +322,7 @@ export class StereoSynthesis {
       this.#synthesize(scene, eyes, shown, views);
     } else {
       if (isAuto && views && this.#isNear) this.#lookNear(scene, eyes, views);
-      renderer.render(scene, shown);
+      this.#asEyes(() => renderer.render(scene, shown));
     }
     if (!isAuto) return;
     this.#timer.end();
@@ -325,19 +356,18 @@ export class StereoSynthesis {
       while (!isDone) {
         this.#allocate(target);
         const source = this.#source, passes = this.#passes;
-        const left = this.#draw(source, views.size, scene, this.#look(eyes, views));
+        const left = this.#draw(source, views.size, scene, eyes, views);
         this.#aside(() => {
           passes.prepare(views, source.texture, source.depthTexture, source.samples > 0);
           if (this.mode === 'auto' && this.#frames % LOOKS[0] === 0) this.#count(views);
         });
         this.#assign(passes);
-        this.#show(scene, shown, left);
+        this.#asEyes(() => this.#show(scene, shown, left));
         // Whether three collects frames is known once a picture is drawn, which is then drawn again.
         isDone = this.#isBuffered || this.#drawnTo === target;
         this.#isBuffered ||= !isDone;
       }
     } finally {
-      renderer.setRenderTarget(target);
       info.autoReset = autoReset;
     }
   }
@@ -456,13 +486,14 @@ export class StereoSynthesis {
   }
 
   /** Draws what moves with the synthesis into a target. Returns how many objects are left. */
-  #draw(target, size, scene, camera) {
+  #draw(target, size, scene, eyes, views) {
     const { renderer } = this;
     const before = renderer.getRenderTarget();
+    const camera = this.#look(eyes, views);
     target.setSize(...size);
     if (target.samples > 0 && renderer.properties?.get) renderer.properties.get(target).__useRenderToTexture = false;
     const isWanted = (object, isTransparent) => !isTransparent && !this.#isLater(object);
-    const part = () => this.#part(scene, isWanted, camera);
+    const part = () => this.#asSource(eyes, views, before, () => this.#part(scene, isWanted, camera));
     const left = this.#once(() => {
       renderer.xr.enabled = false;
       renderer.setRenderTarget(target);
@@ -471,6 +502,34 @@ export class StereoSynthesis {
     });
     renderer.setRenderTarget(before);
     return left;
+  }
+
+  /** Draws the source. Materials that ask the renderer for its size get what covers the source as the eye's does the eye. */
+  #asSource({ cameras }, { size }, shown, draw) {
+    const { renderer } = this;
+    const { viewport } = cameras[this.#rendered];
+    const [x, y] = [size[0] / viewport.z, size[1] / viewport.w];
+    const eye = this.#isPresenting ? renderer.getViewport(new Vector4()) : viewport.clone().divideScalar(this.#ratioOf(shown));
+    const scaled = (name) => {
+      const get = renderer[name];
+      return (to) => get.call(renderer, to).set(Math.round(to.x * x), Math.round(to.y * y));
+    };
+    return answering(renderer, {
+      getViewport: (to) => to.set(0, 0, eye.z * x, eye.w * y), getSize: scaled('getSize'), getDrawingBufferSize: scaled('getDrawingBufferSize'),
+    }, draw);
+  }
+
+  /** Draws both eyes. On a canvas, the viewport is that of an eye, as three's `StereoEffect` has it. */
+  #asEyes(draw) {
+    const { renderer } = this;
+    if (this.#isPresenting) return draw();
+    const ratio = this.#ratioOf(renderer.getRenderTarget());
+    return answering(renderer, { getViewport: (to) => renderer.getCurrentViewport(to).divideScalar(ratio) }, draw);
+  }
+
+  /** A target's pixels for each of those that the renderer counts. */
+  #ratioOf(target) {
+    return target ? 1 : this.renderer.getPixelRatio();
   }
 
   /** Draws a part of the scene. Its list is not a public promise of three's; without it, layers hide objects. */
@@ -493,7 +552,7 @@ export class StereoSynthesis {
   #lookNear(scene, eyes, views) {
     if (this.#frames % LOOKS[1] !== 0 || !this.#passes) return;
     const small = this.#small ??= this.#target(false, 0), size = [64, 64];
-    this.#draw(small, size, scene, this.#look(eyes, views));
+    this.#draw(small, size, scene, eyes, views);
     this.#aside(() => this.#count(views, size, small.depthTexture));
   }
 

@@ -5,6 +5,9 @@ import { StereoEffect } from 'three/addons/effects/StereoEffect.js';
 import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
 import { RenderPass } from 'three/addons/postprocessing/RenderPass.js';
 import { ShaderPass } from 'three/addons/postprocessing/ShaderPass.js';
+import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { StereoSynthesis } from 'yoro-three';
@@ -134,8 +137,10 @@ function views(cases) {
 }
 
 /** Compares a scene on a canvas with three's own `StereoEffect`. */
-async function compare({ scene: name, size = 256, options = {}, renderer: attributes = {}, tweak, picture = false, effect = true, frames = Number(THREE.REVISION) > 170 ? 1 : 8 }) {
+async function compare({ scene: name, size = 256, pixelRatio = 1, options = {}, renderer: attributes = {}, tweak, picture = false, effect = true, frames = Number(THREE.REVISION) > 170 ? 1 : 8 }) {
   const renderer = rendererOf(2 * size, size, attributes);
+  renderer.setPixelRatio(pixelRatio);
+  renderer.setSize(2 * size / pixelRatio, size / pixelRatio, false);
   const { scene, camera } = typeof name === 'string' ? await build(name, renderer) : name;
   tweak?.(scene, camera);
   const stereo = new StereoSynthesis(renderer, { mode: 'synthesized', ...options });
@@ -250,6 +255,31 @@ async function controllers(renderer) {
   return { scene, camera: new THREE.PerspectiveCamera(50, 2, 0.05, 100) };
 }
 
+/** Wide lines, whose material asks the renderer for its viewport, on a canvas of more pixels than it counts. */
+async function lines({ deep = false, ...more } = {}) {
+  const scene = new THREE.Scene();
+  scene.background = new THREE.Color(0x8899aa);
+  const geometry = new LineSegmentsGeometry();
+  const points = [];
+  for (let i = 0; i < 40; i++) {
+    const a = 2.4 * i, z = -1 - 0.1 * i;
+    points.push(Math.cos(a) * 1.2, 1.6 + Math.sin(a), z, Math.cos(a + 2) * 1.2, 1.6 + Math.sin(a + 2), z - 0.4);
+  }
+  geometry.setPositions(points);
+  const material = new LineMaterial({ color: 0xcc2200, linewidth: 4, dashed: false });
+  const wide = new LineSegments2(geometry, material);
+  if (deep) {
+    // As code that asks while it is drawn for the pixels of a canvas.
+    const size = new THREE.Vector2();
+    wide.onBeforeRender = (renderer) => material.resolution.copy(renderer.getDrawingBufferSize(size));
+  }
+  wide.frustumCulled = false;
+  scene.add(wide);
+  const camera = new THREE.PerspectiveCamera(70, 2, 0.1, 50);
+  camera.position.set(0, 1.6, 0.5);
+  return compare({ scene: { scene, camera }, renderer: { antialias: true }, pixelRatio: 2, ...more });
+}
+
 /** Why three's own stereo is shown, and whether it is shown. */
 async function fallbacks() {
   const results = {};
@@ -300,8 +330,15 @@ async function state() {
     renderer.getRenderTarget(), renderer.autoClear, renderer.xr.enabled, renderer.info.autoReset, renderer.shadowMap.autoUpdate,
     renderer.toneMapping, renderer.outputColorSpace, scene.background, scene.children.length, scene.matrixWorldAutoUpdate,
     camera.layers.mask, camera.projectionMatrix.elements, renderer.getViewport(new THREE.Vector4()).toArray(),
+    renderer.getCurrentViewport(new THREE.Vector4()).toArray(), renderer.getSize(new THREE.Vector2()).toArray(),
   ]);
   const before = settings(), own = await halves(renderer);
+  // Materials have programs of their own for targets.
+  const target = new THREE.WebGLCubeRenderTarget(128);
+  renderer.setRenderTarget(target, 3);
+  renderer.render(scene, camera);
+  renderer.setRenderTarget(null);
+  target.dispose();
   const begin = memory();
   const stereo = new StereoSynthesis(renderer, { samples: 4 });
   const frames = async (count) => {
@@ -318,12 +355,47 @@ async function state() {
   const larger = renderer.info.render.frame > 0 && stereo.way;
   renderer.setSize(128, 64, false);
   const back = await frames(2);
-  const isSame = settings() === before;
+  // On every way out: drawn by three itself, with an error, into a target with a viewport of its own.
+  const differing = [];
+  const same = (name, was) => {
+    if (settings() !== was) differing.push(`${name}: ${settings()}, not ${was}`);
+  };
+  same('frames', before);
+  for (const mode of ['rendered', 'synthesized']) {
+    stereo.mode = mode;
+    stereo.render(scene, camera);
+    same(mode, before);
+    const thrower = new THREE.Mesh(new THREE.BoxGeometry(), new THREE.MeshBasicMaterial());
+    thrower.frustumCulled = false;
+    thrower.onBeforeRender = () => { throw new Error('of the user'); };
+    scene.add(thrower);
+    const full = settings();
+    let thrown = '';
+    try {
+      stereo.render(scene, camera);
+    } catch ({ message }) {
+      thrown = message;
+    }
+    if (thrown !== 'of the user') differing.push(`no error: ${thrown}`);
+    same(`${mode}, error`, full);
+    scene.remove(thrower);
+    thrower.geometry.dispose();
+    thrower.material.dispose();
+    renderer.setRenderTarget(target, 3);
+    renderer.setViewport(0, 0, 100, 60);
+    const inTarget = settings(), face = renderer.getActiveCubeFace();
+    stereo.render(scene, camera);
+    same(`${mode}, target`, inTarget);
+    if (renderer.getActiveCubeFace() !== face) differing.push('face');
+    renderer.setRenderTarget(null);
+    renderer.setViewport(0, 0, 128, 64);
+    target.dispose();
+  }
   stereo.dispose();
   const end = memory();
   renderer.render(scene, camera);
   const again = await halves(renderer);
-  return { isSame, picture: psnr(own[0], again[0]), begin, few, many, larger, back, end, error: renderer.getContext().getError() };
+  return { differing, picture: psnr(own[0], again[0]), begin, few, many, larger, back, end, error: renderer.getContext().getError() };
 }
 
 /** The picture after the context was lost and restored. */
@@ -491,5 +563,5 @@ async function special() {
   return results;
 }
 
-globalThis.check = { controllers, fallbacks, state, lost, near, composed, choose, quiet, special, views, compare, scenes, session, THREE, StereoSynthesis, rendererOf, build, halves, png, psnr, names };
+globalThis.check = { controllers, lines, fallbacks, state, lost, near, composed, choose, quiet, special, views, compare, scenes, session, THREE, StereoSynthesis, rendererOf, build, halves, png, psnr, names };
 globalThis.ready = true;
