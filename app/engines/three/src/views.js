@@ -15,7 +15,7 @@ const roundedUp = (pixels) => Math.max(Math.ceil(pixels - 1e-3), 0);
  *
  * @param {import('three').Matrix4} projection
  */
-const tangents = ({ elements: e }) => ({
+export const tangents = ({ elements: e }) => ({
   left: (e[8] - 1) / e[0], right: (e[8] + 1) / e[0], down: (e[9] - 1) / e[5], up: (e[9] + 1) / e[5],
 });
 
@@ -84,7 +84,7 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
   const firstRow = y + rowOffset;
   const [across, up] = maps[1].map((n, i) => n * TILE[i]);
   return {
-    size, maps, frustum, constant, slope,
+    size, maps, frustum, constant, slope, whole: [width, height],
     uniforms: {
       source_size: size,
       target_size: [width, height],
@@ -108,13 +108,15 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
 }
 
 /**
- * Writes a frustum into a projection matrix, of which everything else stays.
+ * Writes a frustum into a projection matrix, of which everything else stays, and returns it.
  *
  * @param {import('three').Matrix4} matrix
  */
-export function project({ elements: e }, { left, right, down, up }) {
+export function project(matrix, { left, right, down, up }) {
+  const e = matrix.elements;
   e[0] = 2 / (right - left);
   e[5] = 2 / (up - down);
   e[8] = (right + left) / (right - left);
   e[9] = (up + down) / (up - down);
+  return matrix;
 }
