@@ -7,6 +7,7 @@
 #define YORO_KIT_H
 
 #include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -377,5 +378,14 @@ static inline void yoro_kit_compose(const YoroKitEyes *shown, const YoroKitEyes 
     block->inset_source[2] = (float)(u->mirrored ? u->law[1] * per_column : -u->law[1] * per_column);
   }
 }
+
+/* Each structure is the shaders' block, byte by byte. */
+#if defined(__cplusplus)
+#define YORO_KIT_AT(type, member, byte) static_assert(offsetof(type, member) == byte, #type " differs from the shaders' block")
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define YORO_KIT_AT(type, member, byte) _Static_assert(offsetof(type, member) == byte, #type " differs from the shaders' block")
+#else
+#define YORO_KIT_AT(type, member, byte) extern char yoro_kit_at[offsetof(type, member) == byte ? 1 : -1]
+#endif
 
 #endif

@@ -1,6 +1,8 @@
 //! The samples, compiled as users compile them: with C and C++ compilers, against the header and the built library.
 //! Python stands for all other languages.
 
+#[path = "programs/direct3d.rs"]
+mod direct3d;
 #[path = "../kit/files.rs"]
 mod kit;
 

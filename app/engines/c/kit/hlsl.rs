@@ -1,0 +1,309 @@
+//! The kit's shaders in HLSL, made from their GLSL by rules that cover what the synthesis uses. Names and comments stay, as
+//! do the settings, which the compiler of HLSL gets as macros. A compiler tells if a rule is missing.
+
+use std::fmt::Write as _;
+
+use regex::{Captures, Regex};
+
+/// The macros that stay in the text, and what they set. All others are resolved here: UNIFORM_BLOCK is set, and no other.
+const SETTINGS: [(&str, &str); 4] = [
+    ("WRITE_DEPTH", "the target's depth, too, for transparent objects"),
+    ("MOTION", "motion vectors in place of colour; the block is YoroKitMotionUniforms"),
+    ("SOURCE_MAP", "where each pixel comes from, to a second target of R32_UINT"),
+    ("SOURCE_PARTS", "the source is a rectangle of its textures"),
+];
+
+/// The stages' own inputs and outputs, with semantics in place of numbers.
+const VERTEX: &str = "layout(location = SV_VertexID) in uint gl_VertexID;
+layout(location = SV_Position) out vec4 gl_Position;
+";
+const PIXEL: &str = "layout(location = SV_Position) in vec4 gl_FragCoord;\n";
+const DEPTH: &str = "layout(location = SV_Depth) out float gl_FragDepth;\n";
+
+/// What HLSL has no words for. Each is added to the files that call it. Direct3D's own `lerp` is not exact at 1, and vkd3d
+/// does not know `reversebits`.
+const FUNCTIONS: [(&str, &str); 4] = [
+    (
+        "mix",
+        "float mix(float a, float b, float t) { return a * (1.0 - t) + b * t; }
+float2 mix(float2 a, float2 b, float t) { return a * (1.0 - t) + b * t; }
+float4 mix(float4 a, float4 b, float t) { return a * (1.0 - t) + b * t; }
+float4 mix(float4 a, float4 b, bool4 t) {
+    return float4(t.x ? b.x : a.x, t.y ? b.y : a.y, t.z ? b.z : a.z, t.w ? b.w : a.w);
+}
+",
+    ),
+    ("mod", "float2 mod(float2 a, float2 b) { return a - b * floor(a / b); }\n"),
+    (
+        "reversed",
+        "uint reversed(uint bits) {
+    bits = bits >> 16 | bits << 16;
+    bits = (bits & 0xff00ff00u) >> 8 | (bits & 0x00ff00ffu) << 8;
+    bits = (bits & 0xf0f0f0f0u) >> 4 | (bits & 0x0f0f0f0fu) << 4;
+    bits = (bits & 0xccccccccu) >> 2 | (bits & 0x33333333u) << 2;
+    return (bits & 0xaaaaaaaau) >> 1 | (bits & 0x55555555u) << 1;
+}
+",
+    ),
+    // No shader samples integers before Shader Model 6.7.
+    (
+        "load_at",
+        "uint4 load_at(Texture2D<uint4> map, float2 at) {
+    uint2 size;
+    map.GetDimensions(size.x, size.y);
+    return map.Load(int3((int2)(at * (float2)(size)), 0));
+}
+",
+    ),
+];
+
+/// Patterns of whole declarations, in this order, and their replacements.
+const DECLARATIONS: [(&str, &str); 9] = [
+    (r"(?m)^(#version|#line|precision|#define (TEXTURE|BLOCK|VARYING|UNIFORM|UNIFORM_BLOCK|TEXEL_PLACE|TEXTURE_PLACE)\b).*\n", ""),
+    (r"\bhighp |layout\(constant_id = 0\) ", ""),
+    (r"TEXTURE\((\d)\) uniform usampler2D (\w+);", "Texture2D<uint4> $2 : register(t$1);"),
+    (
+        r"TEXTURE\((\d)\) uniform sampler2D (\w+);",
+        "Texture2D<float4> $2 : register(t$1);\nSamplerState ${2}_sampler : register(s$1);",
+    ),
+    (r"UNIFORM_BLOCK uniform (\w+) \{", "cbuffer $1 : register(b0) {"),
+    (r"(?m)^const ", "static const "),
+    (r"= \w+\[\d\]\((.*)\);", "= {$1};"),
+    // fxc refuses an output that some way through the function leaves unwritten, even if nobody reads it then.
+    (r"\bout (\w+) (\w+)\) \{\n", "out $1 $2) {\n    $2 = ($1)0;\n"),
+    (r"\bvoid main\(\) \{", "void shade() {"),
+];
+
+/// Functions and their calls in HLSL, with arguments by number.
+const CALLS: [(&str, &str); 9] = [
+    ("TEXEL_PLACE", "$0"),
+    ("TEXTURE_PLACE", "$0"),
+    ("texelFetch", "$0.Load(int3($1, $2))"),
+    ("textureLod", "$0.SampleLevel($0_sampler, $1, $2)"),
+    ("textureGather", "$0.Gather($0_sampler, $1)"),
+    ("lessThan", "($0 < $1)"),
+    ("lessThanEqual", "($0 <= $1)"),
+    ("greaterThan", "($0 > $1)"),
+    ("texture", "load_at($0, $1)"),
+];
+
+/// Other words and their replacements. HLSL has keywords of its own.
+const WORDS: [(&str, &str); 8] = [
+    ("fract", "frac"),
+    ("roundEven", "round"),
+    ("uintBitsToFloat", "asfloat"),
+    ("floatBitsToUint", "asuint"),
+    ("bitfieldReverse", "reversed"),
+    ("findLSB", "firstbitlow"),
+    ("vector", "motion_vector"),
+    ("line", "epipolar_line"),
+];
+
+/// Name, GLSL type and offset in bytes of each member of the block.
+pub type Layout = &'static [(&'static str, &'static str, usize)];
+
+/// Returns a shader for Direct3D. `glsl` is its text for GLSL 310 es with all includes, and with UNIFORM_BLOCK defined;
+/// `title` is the first line, and `block` the structure of yoro_kit.h with this layout.
+pub fn from_glsl(glsl: &str, is_vertex: bool, title: &str, (block, layout): (&str, Layout)) -> String {
+    let mut text = resolve(glsl);
+    for (pattern, replacement) in DECLARATIONS {
+        text = replace(&text, pattern, replacement);
+    }
+    text = rewrite(&text, r"(?m)^UNIFORM (\w+) (\w+);", |found| {
+        let offset = layout.iter().find(|(name, ..)| *name == &found[2]).map_or(0, |(.., offset)| *offset);
+        format!("{} {} : packoffset(c{}.{});", &found[1], &found[2], offset / 16, &"xyzw"[offset % 16 / 4..][..1])
+    });
+    text = rewrite(&text, r"(?s)(cbuffer \w+ : register\(b0\) \{)(.*?)\n\};", |found| {
+        format!("{}{}\n}};", &found[1], found[2].replace('\n', "\n    "))
+    });
+    let depth = match (text.contains("gl_FragDepth"), text.contains("#ifdef WRITE_DEPTH")) {
+        (false, _) => String::new(),
+        (true, false) => DEPTH.to_owned(),
+        (true, true) => format!("#ifdef WRITE_DEPTH\n{DEPTH}#endif\n"),
+    };
+    text = with_entry_point(&if is_vertex { format!("{VERTEX}{text}") } else { format!("{PIXEL}{depth}{text}") }, is_vertex);
+    text = with_constructors(text);
+    for (name, call) in CALLS {
+        text = rewrite_calls(text, name, |arguments| {
+            let put = |call: String, (i, value): (usize, &&str)| call.replace(&format!("${i}"), value);
+            arguments.iter().enumerate().fold(call.to_owned(), put)
+        });
+    }
+    for (short, word) in [("", "float"), ("i", "int"), ("u", "uint"), ("b", "bool")] {
+        for n in 2..=4 {
+            let (glsl, hlsl) = (format!("{short}vec{n}"), format!("{word}{n}"));
+            // With one argument it is a conversion, or repeats a number.
+            text = rewrite_calls(text, &glsl, |arguments| match arguments {
+                [one] => format!("({hlsl})({one})"),
+                _ => format!("{hlsl}({})", arguments.join(", ")),
+            });
+            text = replace(&text, &format!(r"\b{glsl}\b"), &hlsl);
+        }
+    }
+    text = replace(&text, r"(\w+) != (\(\w+\)\(0\))", "any($1 != $2)");
+    text = rewrite(&text, r"(?m)^(.*?)(//.*)?$", |found| {
+        let code = WORDS.iter().fold(found[1].to_owned(), |code, (glsl, hlsl)| {
+            replace(&code, &format!(r"\b{glsl}\b"), hlsl)
+        });
+        code + found.get(2).map_or("", |comment| comment.as_str())
+    });
+    let added = FUNCTIONS.iter().filter(|(name, _)| has(&text, &format!(r"\b{name}\(")));
+    let added: String = added.map(|(_, function)| format!("{function}\n")).collect();
+    let head = head(&text, is_vertex, title, block);
+    replace(&format!("{head}{added}{}", text.trim_start()), r"\n{3,}", "\n\n")
+}
+
+fn has(text: &str, pattern: &str) -> bool {
+    Regex::new(pattern).unwrap().is_match(text)
+}
+
+fn replace(text: &str, pattern: &str, replacement: &str) -> String {
+    Regex::new(pattern).unwrap().replace_all(text, replacement).into_owned()
+}
+
+fn rewrite(text: &str, pattern: &str, replacement: impl Fn(&Captures) -> String) -> String {
+    Regex::new(pattern).unwrap().replace_all(text, |found: &Captures| replacement(found)).into_owned()
+}
+
+/// Resolves the conditions that contain no setting.
+fn resolve(text: &str) -> String {
+    /// A condition, and whether the lines now belong to the text.
+    struct Condition {
+        stays: bool,
+        holds: bool,
+    }
+    let mut conditions: Vec<Condition> = Vec::new();
+    let mut resolved = String::new();
+    for line in text.lines() {
+        let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
+        match word {
+            "#ifdef" | "#ifndef" | "#if" => {
+                let stays = SETTINGS.iter().any(|(setting, _)| rest.contains(setting));
+                let is_block = rest == "UNIFORM_BLOCK";
+                conditions.push(Condition { stays, holds: stays || (word == "#ifdef") == is_block && word != "#if" });
+            }
+            "#else" => {
+                let last = conditions.last_mut().expect("#else follows #if");
+                last.holds = last.stays || !last.holds;
+            }
+            "#endif" => {}
+            _ if conditions.iter().all(|condition| condition.holds) => {
+                resolved.extend([line, "\n"]);
+                continue;
+            }
+            _ => continue,
+        }
+        if conditions.last().is_some_and(|last| last.stays) && conditions.iter().all(|condition| condition.holds) {
+            resolved.extend([line, "\n"]);
+        }
+        if word == "#endif" {
+            conditions.pop();
+        }
+    }
+    resolved
+}
+
+/// Makes variables of a stage's inputs and outputs, and adds the function that the stage begins with, which copies them.
+fn with_entry_point(text: &str, is_vertex: bool) -> String {
+    const FIELD: &str = r"(?m)(^#if.*\n)?^(?:layout\(location = |VARYING\()(\w+)\) (in|out) (\w+) (\w+);";
+    let (mut arguments, mut members, mut before, mut after) = (Vec::new(), String::new(), String::new(), String::new());
+    for found in Regex::new(FIELD).unwrap().captures_iter(text) {
+        let [place, direction, kind, name] = [2, 3, 4, 5].map(|i| &found[i]);
+        let semantic = match (place.parse::<u32>(), is_vertex || direction == "in") {
+            (Err(_), _) => place.to_owned(),
+            (Ok(number), true) => format!("TEXCOORD{number}"),
+            (Ok(number), false) => format!("SV_Target{number}"),
+        };
+        let own = |line: String| match found.get(1) {
+            Some(condition) => format!("{}    {line}\n#endif\n", condition.as_str()),
+            None => format!("    {line}\n"),
+        };
+        if direction == "in" {
+            arguments.push(format!("{kind} in_{name} : {semantic}"));
+            before += &own(format!("{name} = in_{name};"));
+        } else {
+            // The y of Direct3D's clip space is up, and its row 0 is the topmost.
+            let flipped = name == "gl_Position";
+            let value = if flipped { "vec4(gl_Position.x, -gl_Position.y, gl_Position.zw)" } else { name };
+            members += &own(format!("{kind} {name} : {semantic};"));
+            after += &own(format!("shaded.{name} = {value};"));
+        }
+    }
+    format!(
+        "{}\nstruct Shaded {{\n{members}}};\n\nShaded main({}) {{\n{before}    shade();\n    Shaded shaded;\n{after}    return shaded;\n}}\n",
+        replace(text, FIELD, "${1}static $4 $5;"),
+        arguments.join(", ")
+    )
+}
+
+/// Adds a function that makes a structure of its members, for each that the text makes so.
+fn with_constructors(mut text: String) -> String {
+    let structures = Regex::new(r"(?s)\nstruct (\w+) \{\n(.*?)\n\};\n").unwrap();
+    let found: Vec<_> =
+        structures.captures_iter(&text).map(|found| [0, 1, 2].map(|i| found[i].to_owned())).collect();
+    for [whole, name, members] in found {
+        if !has(&text, &format!(r"\b{name}\(")) {
+            continue;
+        }
+        text = replace(&text, &format!(r"\b{name}\("), &format!("make_{name}("));
+        let members: Vec<_> = Regex::new(r"(?m)^\s+(\w+) (\w+);")
+            .unwrap()
+            .captures_iter(&members)
+            .map(|member| [member[1].to_owned(), member[2].to_owned()])
+            .collect();
+        let arguments: Vec<_> = members.iter().map(|member| member.join(" ")).collect();
+        let copies: String = members.iter().map(|[_, name]| format!("    made.{name} = {name};\n")).collect();
+        let function = format!(
+            "\n{name} make_{name}({}) {{\n    {name} made;\n{copies}    return made;\n}}\n",
+            arguments.join(", ")
+        );
+        text = text.replace(&whole, &format!("{whole}{function}"));
+    }
+    text
+}
+
+/// Rewrites all calls of a function, the innermost first.
+fn rewrite_calls(mut text: String, name: &str, call: impl Fn(&[&str]) -> String) -> String {
+    let pattern = Regex::new(&format!(r"\b{name}\(")).unwrap();
+    let starts: Vec<_> = pattern.find_iter(&text).map(|found| (found.start(), found.end())).collect();
+    for (start, first) in starts.into_iter().rev() {
+        let (mut depth, mut from, mut arguments) = (0, first, Vec::new());
+        for (i, c) in text[first..].char_indices().map(|(i, c)| (first + i, c)) {
+            match c {
+                '(' => depth += 1,
+                ')' if depth > 0 => depth -= 1,
+                ',' | ')' if depth == 0 => {
+                    arguments.push(text[from..i].trim());
+                    from = i + 1;
+                    if c == ')' {
+                        break;
+                    }
+                }
+                _ => {}
+            }
+        }
+        let made = call(&arguments);
+        text.replace_range(start..from, &made);
+    }
+    text
+}
+
+/// Returns the comment at a file's beginning: what its caller binds and may set.
+fn head(text: &str, is_vertex: bool, title: &str, block: &str) -> String {
+    let stage = if is_vertex { "Vertex" } else { "Pixel" };
+    let mut head = format!("{title}\n//\n// {stage} shader, Shader Model 5.0 or newer. Entry point: main.\n");
+    for found in Regex::new(r"(?m)^(\w+)(?:<.*>)? (\w+) : register\((\w\d)\)").unwrap().captures_iter(text) {
+        let what = match (&found[1], found[2].contains("depth")) {
+            ("cbuffer", _) => format!(", {block} of yoro_kit.h"),
+            ("SamplerState", true) => ": point, clamp".to_owned(),
+            ("SamplerState", false) => ": linear, clamp".to_owned(),
+            _ => String::new(),
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(head, "// {} {}{what}", &found[3], &found[2]);
+    }
+    for (name, about) in SETTINGS.iter().filter(|(name, _)| has(text, &format!(r"(?m)^#if.*\b{name}\b"))) {
+        let _ = writeln!(head, "// #define {name}: {about}");
+    }
+    head + "\n"
+}
