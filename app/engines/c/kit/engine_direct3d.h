@@ -1,4 +1,35 @@
-/* What the samples on Direct3D share, without any Direct3D: the eyes, files, and figures. */
+/*
+ * What the samples on Direct3D share, without any Direct3D: the eyes, files, and figures.
+ *
+ * They read compiled shaders. Each file of hlsl begins with its stage, registers and settings; its entry point is main:
+ *
+ *     fxc /T vs_5_0 /Fo screen.vert.dxbc hlsl/screen.vert.hlsl      and march.vert
+ *     fxc /T ps_5_0 /Fo tiles.frag.dxbc hlsl/tiles.frag.hlsl        and spans.frag
+ *     fxc /T ps_5_0 /D WRITE_DEPTH=1 /Fo march.frag.dxbc hlsl/march.frag.hlsl
+ *     fxc /T vs_5_0 /E room_vertex /Fo room.vert.dxbc room.hlsl
+ *     fxc /T ps_5_0 /E room_pixel /Fo room.frag.dxbc room.hlsl
+ *     cl /std:c++17 example_d3d12.cpp d3d12.lib                     or example_d3d11.cpp d3d11.lib
+ *
+ * On Linux, vkd3d-compiler -x hlsl -b dxbc-tpf -p ps_5_0 -e main FILE -o RESULT compiles the same text, and vkd3d and DXVK
+ * run the samples: link vkd3d-utils and vkd3d, or dxvk_d3d11. dxc -T ps_6_0 compiles for Shader Model 6.0.
+ *
+ * What differs from other interfaces, in any engine:
+ *
+ * Rows are counted from the top: set rows_down. Clip space has y up all the same, so both vertex shaders turn it; nothing
+ * else must. Frusta stay as they are, with up and down as the eye sees them.
+ *
+ * The clip volume has z from 0 to 1, and the depth buffer stores it if the viewport's MinDepth and MaxDepth are 0 and 1.
+ * yoro_kit.h takes what is stored, and needs no matrix. A game that narrows the range for some objects stores another
+ * law for them. The passes draw one triangle at z 0: nothing must cull it or test its depth.
+ *
+ * Reversed depth, which is cleared to 0 and tested with GREATER, is `reversed`; without a far plane, far_z is INFINITY. To be
+ * read, a depth buffer is made typeless and gets two views: R32_TYPELESS, D32_FLOAT and R32_FLOAT; or R24G8_TYPELESS,
+ * D24_UNORM_S8_UINT and R24_UNORM_X8_TYPELESS. Of a buffer that is not typeless, make a typeless copy by CopyResource.
+ *
+ * MSAA: colour is resolved as usual, and depth to each pixel's nearest. On Direct3D 12, ResolveSubresourceRegion does it with
+ * D3D12_RESOLVE_MODE_MIN, or MAX of reversed depth. On Direct3D 11 nothing does: draw nearest_depth.frag with screen.vert, and
+ * with REVERSED for reversed depth; it reads the samples at t0 and writes the depth of a target.
+ */
 #ifndef ENGINE_DIRECT3D_H
 #define ENGINE_DIRECT3D_H
 
@@ -37,7 +68,7 @@ static std::vector<char> read_shader(const std::string &name) {
   const std::string path = std::string(folder ? folder : ".") + "/" + name + ".dxbc";
   std::vector<char> bytes;
   FILE *file = fopen(path.c_str(), "rb");
-  if (!file) fail(path + " cannot be read: compile the shaders as README.md says");
+  if (!file) fail(path + " cannot be read: compile the shaders as engine_direct3d.h says");
   for (int byte = fgetc(file); byte != EOF; byte = fgetc(file)) bytes.push_back((char)byte);
   fclose(file);
   return bytes;

@@ -1,4 +1,4 @@
-/* An engine on Direct3D 11 that uses only the shader kit. README.md says how to compile the shaders. */
+/* An engine on Direct3D 11 that uses only the shader kit. engine_direct3d.h says how to compile it. */
 #define NOMINMAX
 #include "engine_direct3d.h"
 

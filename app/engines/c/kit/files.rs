@@ -23,6 +23,8 @@ const SHADERS: [(&str, &str); 10] = [
     ("any_view_march.frag", "synthesis/any_view/march.frag"),
     ("compose.frag", "synthesis/compose.frag"),
 ];
+/// Of anti-aliased depth, which Direct3D 11 does not resolve.
+const NEAREST_DEPTH: (&str, &str) = ("nearest_depth.frag", "synthesis/nearest_depth.frag");
 /// Names and values of macros.
 type Macros = &'static [(&'static str, &'static str)];
 
@@ -61,7 +63,7 @@ pub fn write(folder: &Path) -> io::Result<()> {
         }
     }
     fs::create_dir_all(folder.join("hlsl"))?;
-    for (name, source) in SHADERS {
+    for (name, source) in SHADERS.into_iter().chain([NEAREST_DEPTH]) {
         put(&folder.join(format!("hlsl/{name}.hlsl")), &direct3d(source)?)?;
     }
     fs::create_dir_all(folder.join("godot"))?;

@@ -6,11 +6,13 @@ use std::fmt::Write as _;
 use regex::{Captures, Regex};
 
 /// The macros that stay in the text, and what they set. All others are resolved here: UNIFORM_BLOCK is set, and no other.
-const SETTINGS: [(&str, &str); 4] = [
-    ("WRITE_DEPTH", "the target's depth, too, for transparent objects"),
-    ("MOTION", "motion vectors in place of colour; the block is YoroKitMotionUniforms"),
-    ("SOURCE_MAP", "where each pixel comes from, to a second target of R32_UINT"),
-    ("SOURCE_PARTS", "the source is a rectangle of its textures"),
+const SETTINGS: [(&str, &str); 6] = [
+    ("WRITE_DEPTH", "writes the target's depth, too, for transparent objects"),
+    ("MOTION", "makes motion vectors in place of colour; the block is YoroKitMotionUniforms"),
+    ("SOURCE_MAP", "writes where each pixel comes from to a second target, R32_UINT"),
+    ("OPEN_HOLES", "discards the pixels that the source does not show, instead of filling them"),
+    ("REVERSED", "larger depth is nearer"),
+    ("SOURCE_PARTS", "takes a rectangle of larger textures (yoro_kit_source_part)"),
 ];
 
 /// The stages' own inputs and outputs, with semantics in place of numbers.
@@ -20,52 +22,23 @@ layout(location = SV_Position) out vec4 gl_Position;
 const PIXEL: &str = "layout(location = SV_Position) in vec4 gl_FragCoord;\n";
 const DEPTH: &str = "layout(location = SV_Depth) out float gl_FragDepth;\n";
 
-/// What HLSL has no words for. Each is added to the files that call it. Direct3D's own `lerp` is not exact at 1, and vkd3d
-/// does not know `reversebits`.
-const FUNCTIONS: [(&str, &str); 4] = [
-    (
-        "mix",
-        "float mix(float a, float b, float t) { return a * (1.0 - t) + b * t; }
-float2 mix(float2 a, float2 b, float t) { return a * (1.0 - t) + b * t; }
-float4 mix(float4 a, float4 b, float t) { return a * (1.0 - t) + b * t; }
-float4 mix(float4 a, float4 b, bool4 t) {
-    return float4(t.x ? b.x : a.x, t.y ? b.y : a.y, t.z ? b.z : a.z, t.w ? b.w : a.w);
-}
-",
-    ),
-    ("mod", "float2 mod(float2 a, float2 b) { return a - b * floor(a / b); }\n"),
-    (
-        "reversed",
-        "uint reversed(uint bits) {
-    bits = bits >> 16 | bits << 16;
-    bits = (bits & 0xff00ff00u) >> 8 | (bits & 0x00ff00ffu) << 8;
-    bits = (bits & 0xf0f0f0f0u) >> 4 | (bits & 0x0f0f0f0fu) << 4;
-    bits = (bits & 0xccccccccu) >> 2 | (bits & 0x33333333u) << 2;
-    return (bits & 0xaaaaaaaau) >> 1 | (bits & 0x55555555u) << 1;
-}
-",
-    ),
-    // No shader samples integers before Shader Model 6.7.
-    (
-        "load_at",
-        "uint4 load_at(Texture2D<uint4> map, float2 at) {
-    uint2 size;
-    map.GetDimensions(size.x, size.y);
-    return map.Load(int3((int2)(at * (float2)(size)), 0));
-}
-",
-    ),
-];
+/// What HLSL has no words for. Each paragraph is added to the files that call its function.
+const FUNCTIONS: &str = include_str!("functions.hlsl");
 
 /// Patterns of whole declarations, in this order, and their replacements.
-const DECLARATIONS: [(&str, &str); 9] = [
-    (r"(?m)^(#version|#line|precision|#define (TEXTURE|BLOCK|VARYING|UNIFORM|UNIFORM_BLOCK|TEXEL_PLACE|TEXTURE_PLACE)\b).*\n", ""),
+const DECLARATIONS: [(&str, &str); 11] = [
+    (
+        r"(?m)^(#version|#line|precision|#define (TEXTURE|BLOCK|VARYING|UNIFORM|UNIFORM_BLOCK|TEXEL_PLACE|TEXTURE_PLACE)\b).*\n",
+        "",
+    ),
     (r"\bhighp |layout\(constant_id = 0\) ", ""),
     (r"TEXTURE\((\d)\) uniform usampler2D (\w+);", "Texture2D<uint4> $2 : register(t$1);"),
     (
         r"TEXTURE\((\d)\) uniform sampler2D (\w+);",
         "Texture2D<float4> $2 : register(t$1);\nSamplerState ${2}_sampler : register(s$1);",
     ),
+    (r"TEXTURE\((\d)\) uniform sampler2DMS (\w+);", "Texture2DMS<float4> $2 : register(t$1);"),
+    (r"texelFetch\((sample_\w+), (\w+, \w+)\)", "$1.Load($2)"),
     (r"UNIFORM_BLOCK uniform (\w+) \{", "cbuffer $1 : register(b0) {"),
     (r"(?m)^const ", "static const "),
     (r"= \w+\[\d\]\((.*)\);", "= {$1};"),
@@ -88,13 +61,14 @@ const CALLS: [(&str, &str); 9] = [
 ];
 
 /// Other words and their replacements. HLSL has keywords of its own.
-const WORDS: [(&str, &str); 8] = [
+const WORDS: [(&str, &str); 9] = [
     ("fract", "frac"),
     ("roundEven", "round"),
     ("uintBitsToFloat", "asfloat"),
     ("floatBitsToUint", "asuint"),
     ("bitfieldReverse", "reversed"),
     ("findLSB", "firstbitlow"),
+    ("textureSamples", "samples_of"),
     ("vector", "motion_vector"),
     ("line", "epipolar_line"),
 ];
@@ -111,7 +85,13 @@ pub fn from_glsl(glsl: &str, is_vertex: bool, title: &str, (block, layout): (&st
     }
     text = rewrite(&text, r"(?m)^UNIFORM (\w+) (\w+);", |found| {
         let offset = layout.iter().find(|(name, ..)| *name == &found[2]).map_or(0, |(.., offset)| *offset);
-        format!("{} {} : packoffset(c{}.{});", &found[1], &found[2], offset / 16, &"xyzw"[offset % 16 / 4..][..1])
+        format!(
+            "{} {} : packoffset(c{}.{});",
+            &found[1],
+            &found[2],
+            offset / 16,
+            &"xyzw"[offset % 16 / 4..][..1]
+        )
     });
     text = rewrite(&text, r"(?s)(cbuffer \w+ : register\(b0\) \{)(.*?)\n\};", |found| {
         format!("{}{}\n}};", &found[1], found[2].replace('\n', "\n    "))
@@ -121,7 +101,10 @@ pub fn from_glsl(glsl: &str, is_vertex: bool, title: &str, (block, layout): (&st
         (true, false) => DEPTH.to_owned(),
         (true, true) => format!("#ifdef WRITE_DEPTH\n{DEPTH}#endif\n"),
     };
-    text = with_entry_point(&if is_vertex { format!("{VERTEX}{text}") } else { format!("{PIXEL}{depth}{text}") }, is_vertex);
+    text = with_entry_point(
+        &if is_vertex { format!("{VERTEX}{text}") } else { format!("{PIXEL}{depth}{text}") },
+        is_vertex,
+    );
     text = with_constructors(text);
     for (name, call) in CALLS {
         text = rewrite_calls(text, name, |arguments| {
@@ -141,16 +124,20 @@ pub fn from_glsl(glsl: &str, is_vertex: bool, title: &str, (block, layout): (&st
         }
     }
     text = replace(&text, r"(\w+) != (\(\w+\)\(0\))", "any($1 != $2)");
+    let words = WORDS.map(|(glsl, hlsl)| (Regex::new(&format!(r"\b{glsl}\b")).unwrap(), hlsl));
     text = rewrite(&text, r"(?m)^(.*?)(//.*)?$", |found| {
-        let code = WORDS.iter().fold(found[1].to_owned(), |code, (glsl, hlsl)| {
-            replace(&code, &format!(r"\b{glsl}\b"), hlsl)
-        });
+        let code = words
+            .iter()
+            .fold(found[1].to_owned(), |code, (glsl, hlsl)| glsl.replace_all(&code, *hlsl).into_owned());
         code + found.get(2).map_or("", |comment| comment.as_str())
     });
-    let added = FUNCTIONS.iter().filter(|(name, _)| has(&text, &format!(r"\b{name}\(")));
-    let added: String = added.map(|(_, function)| format!("{function}\n")).collect();
+    let declares = Regex::new(r"(?m)^\w+ (\w+)\(").unwrap();
+    let is_called = |function: &&str| {
+        declares.captures(function).is_some_and(|found| has(&text, &format!(r"\b{}\(", &found[1])))
+    };
+    let added: String = FUNCTIONS.split_inclusive("\n\n").filter(is_called).collect();
     let head = head(&text, is_vertex, title, block);
-    replace(&format!("{head}{added}{}", text.trim_start()), r"\n{3,}", "\n\n")
+    replace(&format!("{head}{added}\n{}", text.trim_start()), r"\n{3,}", "\n\n")
 }
 
 fn has(text: &str, pattern: &str) -> bool {
@@ -180,7 +167,10 @@ fn resolve(text: &str) -> String {
             "#ifdef" | "#ifndef" | "#if" => {
                 let stays = SETTINGS.iter().any(|(setting, _)| rest.contains(setting));
                 let is_block = rest == "UNIFORM_BLOCK";
-                conditions.push(Condition { stays, holds: stays || (word == "#ifdef") == is_block && word != "#if" });
+                conditions.push(Condition {
+                    stays,
+                    holds: stays || (word == "#ifdef") == is_block && word != "#if",
+                });
             }
             "#else" => {
                 let last = conditions.last_mut().expect("#else follows #if");
@@ -193,7 +183,9 @@ fn resolve(text: &str) -> String {
             }
             _ => continue,
         }
-        if conditions.last().is_some_and(|last| last.stays) && conditions.iter().all(|condition| condition.holds) {
+        if conditions.last().is_some_and(|last| last.stays)
+            && conditions.iter().all(|condition| condition.holds)
+        {
             resolved.extend([line, "\n"]);
         }
         if word == "#endif" {
@@ -206,7 +198,8 @@ fn resolve(text: &str) -> String {
 /// Makes variables of a stage's inputs and outputs, and adds the function that the stage begins with, which copies them.
 fn with_entry_point(text: &str, is_vertex: bool) -> String {
     const FIELD: &str = r"(?m)(^#if.*\n)?^(?:layout\(location = |VARYING\()(\w+)\) (in|out) (\w+) (\w+);";
-    let (mut arguments, mut members, mut before, mut after) = (Vec::new(), String::new(), String::new(), String::new());
+    let (mut arguments, mut members, mut before, mut after) =
+        (Vec::new(), String::new(), String::new(), String::new());
     for found in Regex::new(FIELD).unwrap().captures_iter(text) {
         let [place, direction, kind, name] = [2, 3, 4, 5].map(|i| &found[i]);
         let semantic = match (place.parse::<u32>(), is_vertex || direction == "in") {
@@ -302,8 +295,13 @@ fn head(text: &str, is_vertex: bool, title: &str, block: &str) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(head, "// {} {}{what}", &found[3], &found[2]);
     }
-    for (name, about) in SETTINGS.iter().filter(|(name, _)| has(text, &format!(r"(?m)^#if.*\b{name}\b"))) {
-        let _ = writeln!(head, "// #define {name}: {about}");
+    let uses_parts = text.contains(" PART ?") || text.contains("if (PART)");
+    // The block and PART are declared before all functions, in every file.
+    let (_, functions) = text.split_once(") {\n").unwrap_or_default();
+    for (name, about) in SETTINGS {
+        if functions.contains(name) || name == "SOURCE_PARTS" && uses_parts {
+            let _ = writeln!(head, "// #define {name} // {about}");
+        }
     }
     head + "\n"
 }

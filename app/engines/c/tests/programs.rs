@@ -15,7 +15,7 @@ use yoro::eyes::{
     VectorSpace, VectorsOf, View,
 };
 use yoro::synthesis::backend::Places;
-use yoro::synthesis::{LevelPlaces, LevelUniforms, PoseUniforms};
+use yoro::synthesis::{LevelPlaces, LevelUniforms, PoseUniforms, Uniforms};
 
 /// Compilers, with their language and its standard.
 const COMPILERS: [[&str; 3]; 4] =
@@ -388,24 +388,64 @@ fn the_kit_and_the_core_find_the_same_place_of_any_view() {
             Places { source_origin: [0, 0], image_size: [320, 240], target_origin: [7, 9], part: false };
         let core = PoseUniforms::new(&warp, &places);
         let expected: &[u32] = bytemuck::cast_slice(bytemuck::bytes_of(&core));
-        for (name, glsl, offset) in PoseUniforms::LAYOUT {
-            let count = match *glsl {
-                "float" => 1,
-                "vec4" => 4,
-                _ => 2,
-            };
-            for i in offset / 4..offset / 4 + count {
-                let [got, want] = [own[i], expected[i]];
-                if glsl.starts_with('i') {
-                    assert_eq!(got, want, "{name}");
-                } else {
-                    let [got, want] = [got, want].map(f32::from_bits);
-                    // The orientations are given with seven digits.
-                    let off = (got - want).abs();
-                    assert!(off <= 1e-5 * want.abs().max(1.0) + 1e-7, "{name}: {got}, {want}");
-                }
+        compare_blocks(PoseUniforms::LAYOUT, own, expected);
+    }
+}
+
+/// Compares blocks of a layout, without what is beyond the first one's end. Orientations are given with seven digits.
+fn compare_blocks(layout: &[(&str, &str, usize)], own: &[u32], expected: &[u32]) {
+    for (name, glsl, offset) in layout.iter().filter(|(.., offset)| offset / 4 < own.len()) {
+        let count = match *glsl {
+            "float" | "int" | "bool" => 1,
+            "vec4" => 4,
+            _ => 2,
+        };
+        for i in offset / 4..offset / 4 + count {
+            let [got, want] = [own[i], expected[i]];
+            if glsl.starts_with(['i', 'b']) {
+                assert_eq!(got, want, "{name}");
+            } else {
+                let [got, want] = [got, want].map(f32::from_bits);
+                let off = (got - want).abs();
+                assert!(off <= 1e-5 * want.abs().max(1.0) + 1e-7, "{name}: {got}, {want}");
             }
         }
+    }
+}
+
+/// The kit's uniforms of a source that is a part of its textures are the core's, for both eyes, with rows from the bottom
+/// and from the top.
+#[test]
+fn the_kit_and_the_core_find_the_same_part() {
+    const TEXT: &str = "#include \"yoro_kit.h\"
+        #include <stdio.h>
+        int main(void) {
+          for (int i = 0; i < 2; ++i) {
+            YoroKitEyes eyes = {{{-1.2f, 0.9f, 1.0f, -1.1f}, {-0.9f, 1.2f, 1.0f, -1.1f}}, 0.063f, 0.1f, 50, i, i, 300, 280, 1.0f, i};
+            YoroKitViews views;
+            YoroKitUniforms block;
+            if (!yoro_kit_views(&eyes, 7, 9, &views)) return 1;
+            yoro_kit_source_part(&views, 11, 13, 500, 400, &block);
+            const uint32_t *words = (const uint32_t *)&block;
+            for (int k = 0; k < 28; ++k) printf(\"%lu\\n\", (unsigned long)words[k]);
+          }
+          return 0;
+        }";
+    let Some(printed) = of_kit(TEXT, &[]) else { return };
+    let words: Vec<u32> = printed.lines().map(|line| line.parse().unwrap()).collect();
+    for (down, own) in words.chunks(28).enumerate() {
+        let frustum = |left: f32| Frustum { left, right: left + 2.1, bottom: -1.1, top: 1.0 };
+        let convention = [DepthConvention::Standard, DepthConvention::Reversed][down];
+        let depth = DepthRange { near: 0.1, far: 50.0, convention };
+        let dominant = [Eye::Left, Eye::Right][down];
+        let mut pair = EyePair::parallel(Pose::IDENTITY, frustum(0.0), 0.063, depth, [300, 280], dominant);
+        pair.frusta = [frustum(-1.2), frustum(-0.9)];
+        let warp = pair.synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
+        let warp = if down == 1 { warp.rows_from_top() } else { warp };
+        let places =
+            Places { source_origin: [11, 13], image_size: [500, 400], target_origin: [7, 9], part: true };
+        let core = Uniforms::of_part(&warp, &places);
+        compare_blocks(Uniforms::LAYOUT, own, bytemuck::cast_slice(bytemuck::bytes_of(&core)));
     }
 }
 
