@@ -79,33 +79,36 @@ pub type Layout = &'static [(&'static str, &'static str, usize)];
 /// Returns a shader for Direct3D. `glsl` is its text for GLSL 310 es with all includes, and with UNIFORM_BLOCK defined;
 /// `title` is the first line, and `block` the structure of yoro_kit.h with this layout.
 pub fn from_glsl(glsl: &str, is_vertex: bool, title: &str, (block, layout): (&str, Layout)) -> String {
-    let mut text = resolve(glsl);
-    for (pattern, replacement) in DECLARATIONS {
-        text = replace(&text, pattern, replacement);
-    }
-    text = rewrite(&text, r"(?m)^UNIFORM (\w+) (\w+);", |found| {
-        let offset = layout.iter().find(|(name, ..)| *name == &found[2]).map_or(0, |(.., offset)| *offset);
-        format!(
-            "{} {} : packoffset(c{}.{});",
-            &found[1],
-            &found[2],
-            offset / 16,
-            &"xyzw"[offset % 16 / 4..][..1]
-        )
-    });
-    text = rewrite(&text, r"(?s)(cbuffer \w+ : register\(b0\) \{)(.*?)\n\};", |found| {
-        format!("{}{}\n}};", &found[1], found[2].replace('\n', "\n    "))
-    });
-    let depth = match (text.contains("gl_FragDepth"), text.contains("#ifdef WRITE_DEPTH")) {
-        (false, _) => String::new(),
-        (true, false) => DEPTH.to_owned(),
-        (true, true) => format!("#ifdef WRITE_DEPTH\n{DEPTH}#endif\n"),
+    let text = with_declarations(&resolve(glsl), layout);
+    let own = match (is_vertex, text.contains("gl_FragDepth"), text.contains("#ifdef WRITE_DEPTH")) {
+        (true, ..) => VERTEX.to_owned(),
+        (_, false, _) => PIXEL.to_owned(),
+        (_, true, false) => format!("{PIXEL}{DEPTH}"),
+        (_, true, true) => format!("{PIXEL}#ifdef WRITE_DEPTH\n{DEPTH}#endif\n"),
     };
-    text = with_entry_point(
-        &if is_vertex { format!("{VERTEX}{text}") } else { format!("{PIXEL}{depth}{text}") },
-        is_vertex,
-    );
-    text = with_constructors(text);
+    let text = with_calls(with_constructors(with_entry_point(&(own + &text), is_vertex)));
+    let declares = Regex::new(r"(?m)^\w+ (\w+)\(").unwrap();
+    let is_called = |function: &&str| {
+        declares.captures(function).is_some_and(|found| has(&text, &format!(r"\b{}\(", &found[1])))
+    };
+    let added: String = FUNCTIONS.split_inclusive("\n\n").filter(is_called).collect();
+    let head = head(&text, is_vertex, title, block);
+    replace(&format!("{head}{added}\n{}", text.trim_start()), r"\n{3,}", "\n\n")
+}
+
+/// Rewrites declarations. Each member of the block stands where the layout has it.
+fn with_declarations(text: &str, layout: Layout) -> String {
+    let text = DECLARATIONS.iter().fold(text.to_owned(), |text, (from, to)| replace(&text, from, to));
+    let text = rewrite(&text, r"(?m)^UNIFORM (\w+ (\w+));", |found| {
+        let (.., offset) =
+            layout.iter().find(|(name, ..)| *name == &found[2]).expect("a member of the block");
+        format!("{} : packoffset(c{}.{});", &found[1], offset / 16, &"xyzw"[offset % 16 / 4..][..1])
+    });
+    rewrite(&text, r"(?s)(cbuffer .*?)\n\};", |found| found[1].replace('\n', "\n    ") + "\n};")
+}
+
+/// Rewrites calls, types and words.
+fn with_calls(mut text: String) -> String {
     for (name, call) in CALLS {
         text = rewrite_calls(text, name, |arguments| {
             let put = |call: String, (i, value): (usize, &&str)| call.replace(&format!("${i}"), value);
@@ -125,19 +128,11 @@ pub fn from_glsl(glsl: &str, is_vertex: bool, title: &str, (block, layout): (&st
     }
     text = replace(&text, r"(\w+) != (\(\w+\)\(0\))", "any($1 != $2)");
     let words = WORDS.map(|(glsl, hlsl)| (Regex::new(&format!(r"\b{glsl}\b")).unwrap(), hlsl));
-    text = rewrite(&text, r"(?m)^(.*?)(//.*)?$", |found| {
-        let code = words
-            .iter()
-            .fold(found[1].to_owned(), |code, (glsl, hlsl)| glsl.replace_all(&code, *hlsl).into_owned());
-        code + found.get(2).map_or("", |comment| comment.as_str())
-    });
-    let declares = Regex::new(r"(?m)^\w+ (\w+)\(").unwrap();
-    let is_called = |function: &&str| {
-        declares.captures(function).is_some_and(|found| has(&text, &format!(r"\b{}\(", &found[1])))
-    };
-    let added: String = FUNCTIONS.split_inclusive("\n\n").filter(is_called).collect();
-    let head = head(&text, is_vertex, title, block);
-    replace(&format!("{head}{added}\n{}", text.trim_start()), r"\n{3,}", "\n\n")
+    rewrite(&text, r"(?m)^(.*?)(//.*)?$", |found| {
+        let put = |code: String, (glsl, hlsl): &(Regex, &str)| glsl.replace_all(&code, *hlsl).into_owned();
+        let comment = found.get(2).map_or("", |comment| comment.as_str());
+        words.iter().fold(found[1].to_owned(), put) + comment
+    })
 }
 
 fn has(text: &str, pattern: &str) -> bool {
@@ -152,44 +147,38 @@ fn rewrite(text: &str, pattern: &str, replacement: impl Fn(&Captures) -> String)
     Regex::new(pattern).unwrap().replace_all(text, |found: &Captures| replacement(found)).into_owned()
 }
 
+/// A condition of the preprocessor. If it stays in the text, both of its branches do.
+#[derive(Clone, Copy)]
+struct Condition {
+    stays: bool,
+    holds: bool,
+}
+
 /// Resolves the conditions that contain no setting.
 fn resolve(text: &str) -> String {
-    /// A condition, and whether the lines now belong to the text.
-    struct Condition {
-        stays: bool,
-        holds: bool,
-    }
-    let mut conditions: Vec<Condition> = Vec::new();
-    let mut resolved = String::new();
+    let (mut conditions, mut resolved): (Vec<Condition>, String) = Default::default();
+    let hold = |conditions: &[Condition]| conditions.iter().all(|condition| condition.holds);
     for line in text.lines() {
-        let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
+        let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
+        let mut belongs = hold(&conditions);
         match word {
             "#ifdef" | "#ifndef" | "#if" => {
                 let stays = SETTINGS.iter().any(|(setting, _)| rest.contains(setting));
-                let is_block = rest == "UNIFORM_BLOCK";
-                conditions.push(Condition {
-                    stays,
-                    holds: stays || (word == "#ifdef") == is_block && word != "#if",
-                });
+                let is_true = word != "#if" && (word == "#ifdef") == (rest == "UNIFORM_BLOCK");
+                conditions.push(Condition { stays, holds: stays || is_true });
+                belongs &= stays;
             }
-            "#else" => {
-                let last = conditions.last_mut().expect("#else follows #if");
-                last.holds = last.stays || !last.holds;
+            "#else" | "#endif" => {
+                let Condition { stays, holds } = conditions.pop().expect("it ends a condition");
+                belongs = stays && hold(&conditions);
+                if word == "#else" {
+                    conditions.push(Condition { stays, holds: stays || !holds });
+                }
             }
-            "#endif" => {}
-            _ if conditions.iter().all(|condition| condition.holds) => {
-                resolved.extend([line, "\n"]);
-                continue;
-            }
-            _ => continue,
+            _ => {}
         }
-        if conditions.last().is_some_and(|last| last.stays)
-            && conditions.iter().all(|condition| condition.holds)
-        {
+        if belongs {
             resolved.extend([line, "\n"]);
-        }
-        if word == "#endif" {
-            conditions.pop();
         }
     }
     resolved
@@ -231,6 +220,7 @@ fn with_entry_point(text: &str, is_vertex: bool) -> String {
 
 /// Adds a function that makes a structure of its members, for each that the text makes so.
 fn with_constructors(mut text: String) -> String {
+    let member = Regex::new(r"(?m)^\s+(\w+) (\w+);").unwrap();
     let structures = Regex::new(r"(?s)\nstruct (\w+) \{\n(.*?)\n\};\n").unwrap();
     let found: Vec<_> =
         structures.captures_iter(&text).map(|found| [0, 1, 2].map(|i| found[i].to_owned())).collect();
@@ -239,11 +229,8 @@ fn with_constructors(mut text: String) -> String {
             continue;
         }
         text = replace(&text, &format!(r"\b{name}\("), &format!("make_{name}("));
-        let members: Vec<_> = Regex::new(r"(?m)^\s+(\w+) (\w+);")
-            .unwrap()
-            .captures_iter(&members)
-            .map(|member| [member[1].to_owned(), member[2].to_owned()])
-            .collect();
+        let members: Vec<_> =
+            member.captures_iter(&members).map(|found| [1, 2].map(|i| found[i].to_owned())).collect();
         let arguments: Vec<_> = members.iter().map(|member| member.join(" ")).collect();
         let copies: String = members.iter().map(|[_, name]| format!("    made.{name} = {name};\n")).collect();
         let function = format!(
@@ -296,10 +283,10 @@ fn head(text: &str, is_vertex: bool, title: &str, block: &str) -> String {
         let _ = writeln!(head, "// {} {}{what}", &found[3], &found[2]);
     }
     let uses_parts = text.contains(" PART ?") || text.contains("if (PART)");
-    // The block and PART are declared before all functions, in every file.
-    let (_, functions) = text.split_once(") {\n").unwrap_or_default();
+    // Every file declares the block and PART.
+    let functions = text.rsplit_once("packoffset").map_or(text, |(_, functions)| functions);
     for (name, about) in SETTINGS {
-        if functions.contains(name) || name == "SOURCE_PARTS" && uses_parts {
+        if if name == "SOURCE_PARTS" { uses_parts } else { functions.contains(name) } {
             let _ = writeln!(head, "// #define {name} // {about}");
         }
     }

@@ -46,6 +46,12 @@ fn run(command: &mut Command) -> String {
     text
 }
 
+/// Returns the figure in a line that a sample prints.
+fn decibels(printed: &str, line: &str) -> f64 {
+    let rest = printed.lines().find_map(|text| text.strip_prefix(line)).unwrap();
+    rest.trim().split(' ').next().unwrap().parse().unwrap()
+}
+
 /// Compiles a sample with every installed compiler, runs the first result, checks its figures and picture, and returns
 /// the picture.
 fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> Option<image::RgbImage> {
@@ -79,11 +85,7 @@ fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> 
         .arg(&picture)
         .env("YORO_KIT", includes[0])
         .env("LD_LIBRARY_PATH", library()));
-    let decibels = |line: &str| -> f64 {
-        let rest = printed.lines().find_map(|text| text.strip_prefix(line)).unwrap();
-        rest.trim().split(' ').next().unwrap().parse().unwrap()
-    };
-    let (synthesized, same) = (decibels("synthesized:"), decibels("same image:"));
+    let [synthesized, same] = ["synthesized:", "same image:"].map(|line| decibels(&printed, line));
     println!("{source}: {synthesized} dB, the same image to both eyes {same} dB");
     assert!(synthesized > 30.0 && synthesized > same + 10.0, "{printed}");
 
@@ -308,39 +310,38 @@ fn the_kit_refuses_what_cannot_be() {
     of_kit(TEXT, &["-fsanitize=undefined,float-cast-overflow", "-fno-sanitize-recover=all"]);
 }
 
-/// All variants of the kit's shaders for Vulkan.
+/// All files of the kit but Godot's, in all variants.
 #[test]
-fn the_kits_shaders_for_vulkan_compile() {
+fn the_kits_shaders_compile() {
     const COMPILER: &str = "glslangValidator";
+    const APIS: [(&str, &[&str]); 3] =
+        [("gles", &[]), ("vulkan", &["-V", "-o"]), ("hlsl", &["-D", "-V", "-e", "main", "-o"])];
+    const LAST_PASSES: [&[&str]; 5] = [
+        &[],
+        &["-DWRITE_DEPTH"],
+        &["-DMOTION", "-DWRITE_DEPTH"],
+        &["-DOPEN_HOLES", "-DSOURCE_MAP"],
+        &["-DSOURCE_PARTS", "-DWRITE_DEPTH"],
+    ];
     if !is_here(COMPILER) {
         println!("SKIPPED: {COMPILER} is not here");
         return;
     }
     let kit = tempfile::tempdir().unwrap();
     kit::write(kit.path()).unwrap();
-    let compile = |file: &str, macros: &[&str]| {
-        let compiled = kit.path().join("compiled");
-        run(Command::new(COMPILER).args(["-V", "-o"]).arg(compiled).args(macros).arg(kit.path().join(file)));
-    };
-    let settings: [&[&str]; 2] = [&[], &["-DWRITE_DEPTH"]];
-    for (shader, settings) in [
-        ("screen.vert", &settings[..1]),
-        ("march.vert", &settings[..1]),
-        ("tiles.frag", &settings[..1]),
-        ("spans.frag", &settings[..1]),
-        ("march.frag", &settings[..]),
-        ("march.frag", &[&["-DMOTION"], &["-DMOTION", "-DWRITE_DEPTH"]]),
-        ("any_view_tiles.frag", &settings[..1]),
-        ("any_view_spans.frag", &settings[..1]),
-        ("any_view_march.frag", &settings[..]),
-        ("compose.frag", &settings[..1]),
-    ] {
-        settings.iter().for_each(|macros| compile(&format!("vulkan/{shader}"), macros));
+    let mut count = 0;
+    for (api, options) in APIS {
+        for file in std::fs::read_dir(kit.path().join(api)).unwrap() {
+            let path = file.unwrap().path();
+            let is_last = path.file_name().unwrap().to_str().unwrap().contains("march.frag");
+            for macros in &LAST_PASSES[..if is_last { LAST_PASSES.len() } else { 1 }] {
+                let compiled = options.last().map(|_| kit.path().join("compiled"));
+                run(Command::new(COMPILER).args(options).args(compiled).args(*macros).arg(&path));
+                count += 1;
+            }
+        }
     }
-    for shader in ["any_view_tiles.frag", "any_view_spans.frag", "any_view_march.frag", "compose.frag"] {
-        // The other shaders for OpenGL ES are compiled where they are used.
-        run(Command::new(COMPILER).arg(kit.path().join("gles").join(shader)));
-    }
+    assert_eq!(count, 18 + 18 + 19);
 }
 
 /// The kit's uniforms of any view are the core's, with rows from the bottom and from the top.
