@@ -1,5 +1,6 @@
 //! `cargo xtask maintain`: the commands that only maintainers run, and the programs that tests use.
 
+pub(crate) mod direct3d;
 pub mod estimate;
 pub(crate) mod godot;
 pub(crate) mod hello_xr;

@@ -10,7 +10,7 @@ use anyhow::{Context as _, anyhow, bail};
 use crate::maintain::estimate::Compilers;
 
 use super::binaries::Program;
-use crate::maintain::{hello_xr, monado};
+use crate::maintain::{direct3d, hello_xr, monado};
 use crate::{android, apt, arm64, package, setup, web};
 
 /// A program or package that some tests need.
@@ -62,6 +62,7 @@ static ITEMS: [Item; 14] = [
     // Monado's drivers, and its launcher for this machine's programs.
     fetched("Mesa 25", "MULTIVIEW", "yoro-tests multiview::", || Ok(monado::make()?.join("run"))),
     fetched("hello_xr", "HELLO_XR", "yoro-openxr-layer hello_xr; yoro-cli through_the_layer", hello_xr::make),
+    fetched("vkd3d and DXVK", "DIRECT3D", "yoro-c direct3d_", direct3d::make),
     fetched("shader compilers for mobile GPUs", "SHADER_COMPILERS", "yoro-tests shader_cost::", || {
         Ok(Compilers::make()?.folder().to_owned())
     }),

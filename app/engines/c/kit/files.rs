@@ -7,6 +7,9 @@ use std::path::Path;
 
 use yoro::synthesis::{LevelUniforms, PoseUniforms, Uniforms};
 
+#[path = "hlsl.rs"]
+mod hlsl;
+
 /// Each file of the kit, and the file of `yoro-shaders` that it is made from.
 const SHADERS: [(&str, &str); 10] = [
     ("screen.vert", "screen.vert"),
@@ -20,6 +23,8 @@ const SHADERS: [(&str, &str); 10] = [
     ("any_view_march.frag", "synthesis/any_view/march.frag"),
     ("compose.frag", "synthesis/compose.frag"),
 ];
+/// Of anti-aliased depth, which Direct3D 11 does not resolve.
+const NEAREST_DEPTH: (&str, &str) = ("nearest_depth.frag", "synthesis/nearest_depth.frag");
 /// Names and values of macros.
 type Macros = &'static [(&'static str, &'static str)];
 
@@ -57,13 +62,21 @@ pub fn write(folder: &Path) -> io::Result<()> {
             put(&folder.join(api).join(name), &shader(source, version, macros)?)?;
         }
     }
+    fs::create_dir_all(folder.join("hlsl"))?;
+    for (name, source) in SHADERS.into_iter().chain([NEAREST_DEPTH]) {
+        put(&folder.join(format!("hlsl/{name}.hlsl")), &direct3d(source)?)?;
+    }
     fs::create_dir_all(folder.join("godot"))?;
     for (name, vertex, fragment, versions) in GODOT {
         put(&folder.join("godot").join(name), &godot(vertex, fragment, versions)?)?;
     }
     for (name, text) in [
-        ("yoro_kit.h", include_str!("yoro_kit.h")),
+        ("yoro_kit.h", &*header()),
         ("example.c", include_str!("example.c")),
+        ("example_d3d11.cpp", include_str!("example_d3d11.cpp")),
+        ("example_d3d12.cpp", include_str!("example_d3d12.cpp")),
+        ("engine_direct3d.h", include_str!("engine_direct3d.h")),
+        ("room.hlsl", include_str!("room.hlsl")),
         ("engine_gles.h", include_str!("../examples/engine_gles.h")),
         ("picture.h", include_str!("../examples/picture.h")),
     ] {
@@ -72,6 +85,41 @@ pub fn write(folder: &Path) -> io::Result<()> {
     let text = include_str!("README.md").replace("POSE_UNIFORMS\n", &table(PoseUniforms::LAYOUT));
     let text = text.replace("LEVEL_UNIFORMS\n", &table(LevelUniforms::LAYOUT));
     put(&folder.join("README.md"), &text.replace("UNIFORMS\n", &table(Uniforms::LAYOUT)))
+}
+
+/// The structures of `yoro_kit.h`, with the shaders' layouts.
+const BLOCKS: [(&str, hlsl::Layout); 3] = [
+    ("YoroKitUniforms", Uniforms::LAYOUT),
+    ("YoroKitPoseUniforms", PoseUniforms::LAYOUT),
+    ("YoroKitLevelUniforms", LevelUniforms::LAYOUT),
+];
+
+/// Returns `yoro_kit.h`, which lets the compiler check its structures against the layouts.
+fn header() -> String {
+    let text = include_str!("yoro_kit.h");
+    let mut header = text.trim_end().trim_end_matches("#endif").to_owned();
+    for (block, layout) in BLOCKS {
+        for (member, _, offset) in layout {
+            let block = if *member == "motion" { "YoroKitMotionUniforms" } else { block };
+            // Writing to a string cannot fail.
+            let _ = writeln!(header, "YORO_KIT_AT({block}, {member}, {offset});");
+        }
+    }
+    header + "\n#endif\n"
+}
+
+/// Returns the text of one file for Direct3D.
+fn direct3d(source: &str) -> io::Result<String> {
+    let block = match source {
+        "synthesis/compose.frag" => BLOCKS[2],
+        _ if source.contains("any_view") => BLOCKS[1],
+        _ => BLOCKS[0],
+    };
+    let glsl = shader(source, "310 es", &[("UNIFORM_BLOCK", "")])?;
+    let (_, text) = glsl.split_once('\n').unwrap_or_default();
+    let (title, body) = text.split_once('\n').unwrap_or_default();
+    let body: String = body.lines().filter(|line| !is_setting(line)).flat_map(|line| [line, "\n"]).collect();
+    Ok(hlsl::from_glsl(&body, source.ends_with(".vert"), title, block))
 }
 
 /// Writes a file so that a reader never sees half of it.

@@ -7,6 +7,7 @@
 #define YORO_KIT_H
 
 #include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -141,6 +142,24 @@ static inline int yoro_kit_views(const YoroKitEyes *eyes, int x, int y, YoroKitV
   return 1;
 }
 
+/*
+ * Fills the block for a source that is a rectangle of larger textures, at x, y from the side of row 0. The shaders are
+ * compiled with the macro SOURCE_PARTS, or for Vulkan with the specialization constant 0, PART. In the block of any view, set
+ * source_origin and texel.
+ */
+static inline void yoro_kit_source_part(const YoroKitViews *views, int x, int y, int texture_width, int texture_height,
+                                        YoroKitUniforms *block) {
+  const double width = texture_width, height = texture_height;
+  *block = views->uniforms;
+  block->source_origin[0] = x, block->source_origin[1] = y;
+  block->texel[0] = (float)(1 / width), block->texel[1] = (float)(1 / height);
+  block->columns[0] = (float)((block->mirrored ? -1 : 1) / width);
+  block->columns[1] = (float)((block->mirrored ? x + views->width : x) / width);
+  block->rows[0] = (float)(1 / height), block->rows[1] = (float)((y - (double)block->first_row) / height);
+  /* Spans are found by tiles, not by texture coordinates. */
+  for (int i = 0; i < 4; ++i) block->span_place[i] *= (float)views->span_map[i & 1];
+}
+
 /* The block of march.frag with the macro MOTION: 128 bytes. The other passes take its first part. */
 typedef struct {
   YoroKitUniforms uniforms; /* of yoro_kit_views */
@@ -161,6 +180,11 @@ static inline void yoro_kit_place(const YoroKitEyes *eyes, double place[2]) {
  * previous frame, in normalized device coordinates of the rendered eye itself (not of the wider image), with three
  * components. `minus_one` is 1 if their z is from -1 to 1 (OpenGL), 0 if from 0 to 1. The eyes' size is that of an eye's
  * vectors.
+ *
+ * Vectors that a game has for an upscaler mostly point from a surface's place to its previous one, in pixels or in texture
+ * coordinates, and have y down. Multiply pixels by -2 / width and -2 / height, and texture coordinates by -2; where the runtime
+ * takes y up, multiply y by 2 instead. They lack z. With 0 in its place, a surface keeps the disparity that it had before it
+ * came nearer.
  */
 static inline void yoro_kit_motion(const YoroKitEyes *eyes, const YoroKitEyes *previous, int minus_one, float motion[4]) {
   double now[2], then[2];
@@ -377,5 +401,14 @@ static inline void yoro_kit_compose(const YoroKitEyes *shown, const YoroKitEyes 
     block->inset_source[2] = (float)(u->mirrored ? u->law[1] * per_column : -u->law[1] * per_column);
   }
 }
+
+/* Each structure is the shaders' block, byte by byte. */
+#if defined(__cplusplus)
+#define YORO_KIT_AT(type, member, byte) static_assert(offsetof(type, member) == byte, #type " differs from the shaders' block")
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define YORO_KIT_AT(type, member, byte) _Static_assert(offsetof(type, member) == byte, #type " differs from the shaders' block")
+#else
+#define YORO_KIT_AT(type, member, byte) extern char yoro_kit_at[offsetof(type, member) == byte ? 1 : -1]
+#endif
 
 #endif

@@ -2,6 +2,8 @@
 //! C# stands for all other languages.
 
 mod common;
+#[path = "programs/direct3d.rs"]
+mod direct3d;
 #[path = "../kit/files.rs"]
 mod kit;
 
@@ -14,7 +16,7 @@ use yoro::eyes::{
     VectorSpace, VectorsOf, View,
 };
 use yoro::synthesis::backend::Places;
-use yoro::synthesis::{LevelPlaces, LevelUniforms, PoseUniforms};
+use yoro::synthesis::{LevelPlaces, LevelUniforms, PoseUniforms, Uniforms};
 use yoro_c::*;
 
 /// Compilers, with their language and its standard.
@@ -44,6 +46,12 @@ fn run(command: &mut Command) -> String {
         format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success(), "{command:?}\n{text}");
     text
+}
+
+/// Returns the figure in a line that a sample prints.
+fn decibels(printed: &str, line: &str) -> f64 {
+    let rest = printed.lines().find_map(|text| text.strip_prefix(line)).unwrap();
+    rest.trim().split(' ').next().unwrap().parse().unwrap()
 }
 
 /// Compiles a sample with every installed compiler, runs the first result, checks its figures and picture, and returns
@@ -79,11 +87,7 @@ fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> 
         .arg(&picture)
         .env("YORO_KIT", includes[0])
         .env("LD_LIBRARY_PATH", library()));
-    let decibels = |line: &str| -> f64 {
-        let rest = printed.lines().find_map(|text| text.strip_prefix(line)).unwrap();
-        rest.trim().split(' ').next().unwrap().parse().unwrap()
-    };
-    let (synthesized, same) = (decibels("synthesized:"), decibels("same image:"));
+    let [synthesized, same] = ["synthesized:", "same image:"].map(|line| decibels(&printed, line));
     println!("{source}: {synthesized} dB, the same image to both eyes {same} dB");
     assert!(synthesized > 30.0 && synthesized > same + 10.0, "{printed}");
 
@@ -403,39 +407,38 @@ fn the_kit_refuses_what_cannot_be() {
     of_kit(TEXT, &["-fsanitize=undefined,float-cast-overflow", "-fno-sanitize-recover=all"]);
 }
 
-/// All variants of the kit's shaders for Vulkan.
+/// All files of the kit but Godot's, in all variants.
 #[test]
-fn the_kits_shaders_for_vulkan_compile() {
+fn the_kits_shaders_compile() {
     const COMPILER: &str = "glslangValidator";
+    const APIS: [(&str, &[&str]); 3] =
+        [("gles", &[]), ("vulkan", &["-V", "-o"]), ("hlsl", &["-D", "-V", "-e", "main", "-o"])];
+    const LAST_PASSES: [&[&str]; 5] = [
+        &[],
+        &["-DWRITE_DEPTH"],
+        &["-DMOTION", "-DWRITE_DEPTH"],
+        &["-DOPEN_HOLES", "-DSOURCE_MAP"],
+        &["-DSOURCE_PARTS", "-DWRITE_DEPTH"],
+    ];
     if !is_here(COMPILER) {
         println!("SKIPPED: {COMPILER} is not here");
         return;
     }
     let kit = tempfile::tempdir().unwrap();
     kit::write(kit.path()).unwrap();
-    let compile = |file: &str, macros: &[&str]| {
-        let compiled = kit.path().join("compiled");
-        run(Command::new(COMPILER).args(["-V", "-o"]).arg(compiled).args(macros).arg(kit.path().join(file)));
-    };
-    let settings: [&[&str]; 2] = [&[], &["-DWRITE_DEPTH"]];
-    for (shader, settings) in [
-        ("screen.vert", &settings[..1]),
-        ("march.vert", &settings[..1]),
-        ("tiles.frag", &settings[..1]),
-        ("spans.frag", &settings[..1]),
-        ("march.frag", &settings[..]),
-        ("march.frag", &[&["-DMOTION"], &["-DMOTION", "-DWRITE_DEPTH"]]),
-        ("any_view_tiles.frag", &settings[..1]),
-        ("any_view_spans.frag", &settings[..1]),
-        ("any_view_march.frag", &settings[..]),
-        ("compose.frag", &settings[..1]),
-    ] {
-        settings.iter().for_each(|macros| compile(&format!("vulkan/{shader}"), macros));
+    let mut count = 0;
+    for (api, options) in APIS {
+        for file in std::fs::read_dir(kit.path().join(api)).unwrap() {
+            let path = file.unwrap().path();
+            let is_last = path.file_name().unwrap().to_str().unwrap().contains("march.frag");
+            for macros in &LAST_PASSES[..if is_last { LAST_PASSES.len() } else { 1 }] {
+                let compiled = options.last().map(|_| kit.path().join("compiled"));
+                run(Command::new(COMPILER).args(options).args(compiled).args(*macros).arg(&path));
+                count += 1;
+            }
+        }
     }
-    for shader in ["any_view_tiles.frag", "any_view_spans.frag", "any_view_march.frag", "compose.frag"] {
-        // The other shaders for OpenGL ES are compiled where they are used.
-        run(Command::new(COMPILER).arg(kit.path().join("gles").join(shader)));
-    }
+    assert_eq!(count, 18 + 18 + 19);
 }
 
 /// The kit's uniforms of any view are the core's, with rows from the bottom and from the top.
@@ -483,24 +486,64 @@ fn the_kit_and_the_core_find_the_same_place_of_any_view() {
             Places { source_origin: [0, 0], image_size: [320, 240], target_origin: [7, 9], part: false };
         let core = PoseUniforms::new(&warp, &places);
         let expected: &[u32] = bytemuck::cast_slice(bytemuck::bytes_of(&core));
-        for (name, glsl, offset) in PoseUniforms::LAYOUT {
-            let count = match *glsl {
-                "float" => 1,
-                "vec4" => 4,
-                _ => 2,
-            };
-            for i in offset / 4..offset / 4 + count {
-                let [got, want] = [own[i], expected[i]];
-                if glsl.starts_with('i') {
-                    assert_eq!(got, want, "{name}");
-                } else {
-                    let [got, want] = [got, want].map(f32::from_bits);
-                    // The orientations are given with seven digits.
-                    let off = (got - want).abs();
-                    assert!(off <= 1e-5 * want.abs().max(1.0) + 1e-7, "{name}: {got}, {want}");
-                }
+        compare_blocks(PoseUniforms::LAYOUT, own, expected);
+    }
+}
+
+/// Compares blocks of a layout, without what is beyond the first one's end. Orientations are given with seven digits.
+fn compare_blocks(layout: &[(&str, &str, usize)], own: &[u32], expected: &[u32]) {
+    for (name, glsl, offset) in layout.iter().filter(|(.., offset)| offset / 4 < own.len()) {
+        let count = match *glsl {
+            "float" | "int" | "bool" => 1,
+            "vec4" => 4,
+            _ => 2,
+        };
+        for i in offset / 4..offset / 4 + count {
+            let [got, want] = [own[i], expected[i]];
+            if glsl.starts_with(['i', 'b']) {
+                assert_eq!(got, want, "{name}");
+            } else {
+                let [got, want] = [got, want].map(f32::from_bits);
+                let off = (got - want).abs();
+                assert!(off <= 1e-5 * want.abs().max(1.0) + 1e-7, "{name}: {got}, {want}");
             }
         }
+    }
+}
+
+/// The kit's uniforms of a source that is a part of its textures are the core's, for both eyes, with rows from the bottom
+/// and from the top.
+#[test]
+fn the_kit_and_the_core_find_the_same_part() {
+    const TEXT: &str = "#include \"yoro_kit.h\"
+        #include <stdio.h>
+        int main(void) {
+          for (int i = 0; i < 2; ++i) {
+            YoroKitEyes eyes = {{{-1.2f, 0.9f, 1.0f, -1.1f}, {-0.9f, 1.2f, 1.0f, -1.1f}}, 0.063f, 0.1f, 50, i, i, 300, 280, 1.0f, i};
+            YoroKitViews views;
+            YoroKitUniforms block;
+            if (!yoro_kit_views(&eyes, 7, 9, &views)) return 1;
+            yoro_kit_source_part(&views, 11, 13, 500, 400, &block);
+            const uint32_t *words = (const uint32_t *)&block;
+            for (int k = 0; k < 28; ++k) printf(\"%lu\\n\", (unsigned long)words[k]);
+          }
+          return 0;
+        }";
+    let Some(printed) = of_kit(TEXT, &[]) else { return };
+    let words: Vec<u32> = printed.lines().map(|line| line.parse().unwrap()).collect();
+    for (down, own) in words.chunks(28).enumerate() {
+        let frustum = |left: f32| Frustum { left, right: left + 2.1, bottom: -1.1, top: 1.0 };
+        let convention = [DepthConvention::Standard, DepthConvention::Reversed][down];
+        let depth = DepthRange { near: 0.1, far: 50.0, convention };
+        let dominant = [Eye::Left, Eye::Right][down];
+        let mut pair = EyePair::parallel(Pose::IDENTITY, frustum(0.0), 0.063, depth, [300, 280], dominant);
+        pair.frusta = [frustum(-1.2), frustum(-0.9)];
+        let warp = pair.synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
+        let warp = if down == 1 { warp.rows_from_top() } else { warp };
+        let places =
+            Places { source_origin: [11, 13], image_size: [500, 400], target_origin: [7, 9], part: true };
+        let core = Uniforms::of_part(&warp, &places);
+        compare_blocks(Uniforms::LAYOUT, own, bytemuck::cast_slice(bytemuck::bytes_of(&core)));
     }
 }
 
