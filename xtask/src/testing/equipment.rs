@@ -43,7 +43,7 @@ const fn built(
     Item { what, variable, users, fetch, build: Some(build) }
 }
 
-static ITEMS: [Item; 14] = [
+static ITEMS: [Item; 15] = [
     built("the page", "WEB", "yoro-cli web::", page_can_be_built, || web::build().and(this_program())),
     built(
         "the example of yoro-wgpu",
