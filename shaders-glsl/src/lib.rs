@@ -63,6 +63,7 @@ static APP: &[File] = embed![
     "include/imbuffer.glsl",
     "include/ink.glsl",
     "include/material.glsl",
+    "include/panel.glsl",
     "include/reprojection.glsl",
     "include/seam.glsl",
     "include/shade.glsl",

@@ -160,8 +160,9 @@ fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
 }
 
 fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
-    for defines in [vec![], vec![("CHROMATIC", String::new())]] {
+    for names in [&[][..], &["CHROMATIC"], &["LEVELS"], &["CHROMATIC", "LEVELS"]] {
         let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
+        let defines: Vec<_> = names.iter().map(|name| (*name, String::new())).collect();
         Program::new(gl, source, &defines)?;
     }
     Program::new(gl, ShaderSource::Screen("viewer/decoded.frag"), &[])?;

@@ -97,7 +97,8 @@ settings! {
         off_help("paper: do not interpolate between ImBuffer entries"),
     /// paper: whole source columns and one depth sample per ImBuffer pixel, as the text says.
     "strict" strict: bool = false,
-    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), or complete from a distance in metres (`1.0`).
+    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`; with foveation those of the wide layer), or
+    /// complete from a distance in metres (`1.0`).
     "guard-band" guard_band: Option<GuardBand> = None;
         value_name("none|Npx|METRES");
         auto("1.0; paper: none"),

@@ -117,7 +117,8 @@ fn a_jump_is_no_motion() {
         // The cube may hide a part of the fence.
         assert!((0.5 * still..still + 1e-4).contains(&got), "{what}: {got}, and the fence alone {still}");
     }
-    let moves = |motion: &mut Motion| motion.nodes[0].moves = Some(track([1.0, 1.2], [0.0, 0.0, 0.0, 0.8, 0.1, 0.0]));
+    let moves =
+        |motion: &mut Motion| motion.nodes[0].moves = Some(track([1.0, 1.2], [0.0, 0.0, 0.0, 0.8, 0.1, 0.0]));
     let slow = fastest(with_cube(&moves), &[1.0, 1.1])[1];
     assert!(slow > 1.5 * still, "the cube moves by {slow}, the fence by {still}");
 }

@@ -85,7 +85,7 @@ impl Headset {
         }
         if !text.is_empty() {
             let panel = hud.set(HudContent { text, progress: None }, Placement::Below);
-            panel.draw_into_eyes(&pair, &pair, &[0, 1].map(|i| images[i].color_only()));
+            panel.draw_into_eyes(&pair, &[0, 1].map(|i| images[i].color_only()));
         }
         Ok(fits)
     }
