@@ -1659,8 +1659,10 @@ YoroResult yoro_gl_create(const YoroGlInfo *info,
                           YoroContext **context);
 
 /**
- * Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
- * buffers take 16 bytes for each 16 x 8 pixels of the source and of the target.
+ * Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add
+ * padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose buffers take 16 bytes for
+ * each 16 x 8 pixels of the source and of the target. For YORO_WARP_KIND_MOTION, give the `warp` of YoroMotionWarp: both
+ * kinds have the same buffers.
  *
  * Call it from any thread. It needs neither a loader nor a GL context.
  *
@@ -1694,6 +1696,15 @@ YoroResult yoro_gl_prepare(YoroContext *context,
  * @pre The GL context is current.
  */
 YoroResult yoro_gl_prepare_pose(YoroContext *context, const YoroPoseWarp *warp);
+
+/**
+ * Does what yoro_gl_prepare does, in a context of YORO_WARP_KIND_MOTION.
+ *
+ * @param context The context.
+ * @param warp    The warp of a frame of these sizes.
+ * @pre The GL context is current.
+ */
+YoroResult yoro_gl_prepare_motion(YoroContext *context, const YoroMotionWarp *warp);
 
 /**
  * Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it. Call it after the

@@ -115,8 +115,10 @@ pub unsafe extern "C" fn yoro_gl_create(
     unsafe { create(info, context, |info| info.messages, |info| Gl::new(info)) }
 }
 
-/// Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
-/// buffers take 16 bytes for each 16 x 8 pixels of the source and of the target.
+/// Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add
+/// padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose buffers take 16 bytes for
+/// each 16 x 8 pixels of the source and of the target. For YORO_WARP_KIND_MOTION, give the `warp` of YoroMotionWarp: both
+/// kinds have the same buffers.
 ///
 /// Call it from any thread. It needs neither a loader nor a GL context.
 ///
@@ -217,6 +219,25 @@ pub unsafe extern "C" fn yoro_gl_prepare_pose(
         enter_gl(context, |gl| {
             let warp = gl.fitting(|| read_pose_warp(warp))?;
             Ok(gl.passes.pose()?.prepare(&warp)?)
+        })
+    }
+}
+
+/// Does what yoro_gl_prepare does, in a context of YORO_WARP_KIND_MOTION.
+///
+/// @param context The context.
+/// @param warp    The warp of a frame of these sizes.
+/// @pre The GL context is current.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_gl_prepare_motion(
+    context: *mut YoroContext,
+    warp: *const YoroMotionWarp,
+) -> YoroResult {
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
+    unsafe {
+        enter_gl(context, |gl| {
+            let warp = gl.fitting(|| read_motion_warp(warp))?;
+            Ok(gl.passes.motion()?.prepare(&warp)?)
         })
     }
 }
