@@ -114,7 +114,8 @@ fn short_names<'a>(texts: impl Iterator<Item = &'a str> + Clone) -> BTreeMap<Str
     for word in texts.flat_map(words) {
         declared.entry(word).and_modify(|count| *count += 1);
     }
-    let mut names: Vec<_> = declared.into_iter().filter(|(name, count)| *count > 0 && !kept.contains(name)).collect();
+    let mut names: Vec<_> =
+        declared.into_iter().filter(|(name, count)| *count > 0 && !kept.contains(name)).collect();
     names.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let letters = || 'A'..='Z';
     let pairs = letters().flat_map(|first| ('a'..='z').map(move |second| format!("{first}{second}")));

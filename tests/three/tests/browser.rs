@@ -201,11 +201,11 @@ fn headsets_show_what_three_would_have_shown() {
     let Some(value) = session(NEWEST, quest.clone(), what) else { return };
     is_good(&value, [32.0, 0.96, 10.0]);
     assert_eq!(value["foveation"], 0, "three's own is set likewise");
+    let centre = number(&value, "centre");
     assert!(number(&value, "after") > 30.0, "the canvas after the session: {value}");
     // A projection layer, the left eye rendered, hands and transparent objects, objects of one eye.
     let projection = json!({ "size": 256, "skew": 0.15, "hasLayers": true });
-    let what =
-        "{ scene: 'glass', hands: true, options: { dominantEye: 'left', foveation: 'off' }, renderer: { antialias: true } }";
+    let what = "{ scene: 'glass', hands: true, options: { dominantEye: 'left', foveation: 'off' }, renderer: { antialias: true } }";
     let value = session(NEWEST, projection, what).unwrap();
     assert_eq!(value["layer"], "XRProjectionLayer");
     is_good(&value, [36.0, 0.98, 15.0]);
@@ -218,12 +218,15 @@ fn headsets_show_what_three_would_have_shown() {
     is_good(&value, [31.0, 0.95, 8.0]);
     assert!(number(&value, "calls") < 0.65 * number(&value, "callsOwn"), "{value}");
     // Without a word, as three asks the headset: its maximum.
-    let value = session(NEWEST, quest, "{ scene: 'street', hands: true, options: { samples: 4 } }").unwrap();
+    let value = session(NEWEST, quest, "{ scene: 'street', options: { samples: 4 } }").unwrap();
     println!("{value}");
-    assert_eq!((&value["way"], &value["trouble"], &value["error"]), (&json!("synthesized"), &json!(null), &json!(0)));
+    assert_eq!(
+        (&value["way"], &value["trouble"], &value["error"]),
+        (&json!("synthesized"), &json!(null), &json!(0))
+    );
     assert_eq!(value["foveation"], 1);
     assert!(number(&value, "own") < 40.0, "fewer pixels: {value}");
-    assert!(number(&value, "centre") > 31.0, "where the eyes look: {value}");
+    assert!(number(&value, "centre") >= centre - 0.1, "where the eyes look: {value}, not {centre}");
     let value = session(NEWEST, json!({ "size": 256, "cant": 0.1 }), "{ scene: 'cubes' }").unwrap();
     assert_eq!(value["trouble"], "the displays are turned against each other");
     assert_eq!((&value["own"], &value["psnr"]), (&json!(99), &json!(99)), "three's own picture: {value}");
@@ -247,10 +250,16 @@ fn levels_are_sharp_where_the_eyes_look() {
         ));
         for value in values.as_array().unwrap() {
             println!("{value}");
-            assert_eq!((&value["way"], &value["trouble"], &value["error"]), (&json!("synthesized"), &json!(null), &json!(0)));
+            assert_eq!(
+                (&value["way"], &value["trouble"], &value["error"]),
+                (&json!("synthesized"), &json!(null), &json!(0))
+            );
             assert!(number(value, "fovea") >= number(value, "foveaFull") - 0.1, "{value}");
             assert!(number(value, "ownFovea") > 42.0, "{value}");
-            assert!(number(value, "periphery") > periphery && number(value, "ownPeriphery") > 44.0, "{value}");
+            assert!(
+                number(value, "periphery") > periphery && number(value, "ownPeriphery") > 44.0,
+                "{value}"
+            );
             assert!(number(value, "sources") < number(value, "callsOwn"), "{value}");
             assert_eq!(value["memory"], values[0]["memory"], "the gaze takes nothing new");
         }
@@ -299,7 +308,10 @@ fn frames_leave_nothing_behind_and_say_why_they_are_threes() {
 
     let state = browser.evaluate("check.state()");
     println!("{state}");
-    assert_eq!((&state["differing"], &state["picture"], &state["error"]), (&json!([]), &json!(99), &json!(0)));
+    assert_eq!(
+        (&state["differing"], &state["picture"], &state["error"]),
+        (&json!([]), &json!(99), &json!(0))
+    );
     assert_eq!(state["few"], state["many"], "nothing grows");
     assert_eq!(state["few"], state["back"], "also after another size");
     assert_eq!(state["begin"], state["end"], "dispose frees everything");
