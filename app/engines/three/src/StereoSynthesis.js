@@ -2,6 +2,7 @@ import {
   ArrayCamera, Color, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, LinearFilter, Matrix4, PerspectiveCamera,
   StereoCamera, UnsignedByteType, UnsignedInt248Type, UnsignedIntType, UVMapping, Vector2, Vector4, WebGLRenderTarget,
 } from 'three';
+import { asEyes, asSource } from './answers.js';
 import { Chooser } from './choice.js';
 import { encode, Encoding } from './encoding.js';
 import { Readback, Timer } from './gpu.js';
@@ -17,18 +18,7 @@ const EYE_LAYERS = 0b110;
 const NEAR_SHARES = [0.5, 0.35];
 /** Frames between two looks at what is near: with synthesis, and without, where a look costs an eye's draw calls. */
 const LOOKS = [12, 45];
-const MIXED = 'what is seen through transmission differs between the eyes: three’s layers 1 and 2, or a background that fills the view';
-
-/** Has the renderer give other answers while something is drawn. */
-function answering(renderer, answers, draw) {
-  const own = {};
-  for (const name in answers) own[name] = renderer[name];
-  try {
-    return draw(Object.assign(renderer, answers));
-  } finally {
-    Object.assign(renderer, own);
-  }
-}
+const MIXED = 'what transmission shows differs between the eyes: layers 1 and 2, or a flat background';
 
 const isOfOneEye = (camera) => camera?.isPerspectiveCamera && !camera.isArrayCamera;
 
@@ -363,7 +353,7 @@ export class StereoSynthesis {
   /** Draws three's own two eyes. */
   #render(scene, shown) {
     this.way = 'rendered';
-    this.#asEyes(() => this.renderer.render(scene, shown));
+    asEyes(this.renderer, () => this.renderer.render(scene, shown));
   }
 
   #synthesize(scene, eyes, shown, views) {
@@ -389,13 +379,13 @@ export class StereoSynthesis {
           });
           if (this.mode === 'auto' && this.#frames % LOOKS[0] === 0) this.#count(views[0]);
           if (!this.#isFoveated) return;
-          this.#wideOther.setSize(...views[0].whole);
+          this.#wideOther.setSize(...views[0].uniforms.target_size);
           passes.wide.drawOther(this.#wideOther);
-          passes.compose(views[1], this.#wideOther);
+          passes.compose(views[1], this.#rendered, this.#wideOther);
         });
         this.#assign(passes);
         passes.isCovering = this.#isCovering;
-        this.#asEyes(() => this.#show(scene, shown, left));
+        asEyes(renderer, () => this.#show(scene, shown, left));
         // Whether three collects frames is known once a picture is drawn, which is then drawn again.
         isDone = this.#isBuffered || this.#drawnTo === target;
         this.#isBuffered ||= !isDone;
@@ -559,7 +549,7 @@ export class StereoSynthesis {
     const isWanted = (object, kind, item) => {
       if (kind === 'opaque' && item && index === 0 && this.#isOfOneEyeAlone(object)) isCovering = true;
       if (kind === 'transmissive' && index === 0) this.#hasGlass = true;
-      return !this.#isLater(object, kind);
+      return !this.#isLater(object, kind) && !(kind === 'opaque' && !this.#hasGlass && views.hides?.(object));
     };
     const color = renderer.getClearColor(new Color()), alpha = renderer.getClearAlpha();
     const clear = () => {
@@ -572,7 +562,9 @@ export class StereoSynthesis {
       scene.background = null;
       renderer.setClearColor(0, 0);
     };
-    const part = () => this.#asSource(eyes, views, before, () => {
+    const { viewport } = eyes.cameras[this.#rendered];
+    const eye = asEyes(renderer, () => renderer.getViewport(new Vector4()), viewport);
+    const part = () => asSource(renderer, views, eye, () => {
       try {
         return this.#part(scene, isWanted, camera, clear);
       } finally {
@@ -590,34 +582,6 @@ export class StereoSynthesis {
     });
     renderer.setRenderTarget(before);
     return left;
-  }
-
-  /** Draws the source. Materials that ask the renderer for its size get what covers the source as the eye's does the eye. */
-  #asSource({ cameras }, { size, whole }, shown, draw) {
-    const { renderer } = this;
-    const { viewport } = cameras[this.#rendered];
-    const [x, y] = [size[0] / whole[0], size[1] / whole[1]];
-    const eye = this.#isPresenting ? renderer.getViewport(new Vector4()) : viewport.clone().divideScalar(this.#ratioOf(shown));
-    const scaled = (name) => {
-      const get = renderer[name];
-      return (to) => get.call(renderer, to).set(Math.round(to.x * x), Math.round(to.y * y));
-    };
-    return answering(renderer, {
-      getViewport: (to) => to.set(0, 0, eye.z * x, eye.w * y), getSize: scaled('getSize'), getDrawingBufferSize: scaled('getDrawingBufferSize'),
-    }, draw);
-  }
-
-  /** Draws both eyes. On a canvas, the viewport is that of an eye, as three's `StereoEffect` has it. */
-  #asEyes(draw) {
-    const { renderer } = this;
-    if (this.#isPresenting) return draw();
-    const ratio = this.#ratioOf(renderer.getRenderTarget());
-    return answering(renderer, { getViewport: (to) => renderer.getCurrentViewport(to).divideScalar(ratio) }, draw);
-  }
-
-  /** A target's pixels for each of those that the renderer counts. */
-  #ratioOf(target) {
-    return target ? 1 : this.renderer.getPixelRatio();
   }
 
   /** Draws a part of the scene. Its list is not a public promise of three's; without it, layers hide objects. */

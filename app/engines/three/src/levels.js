@@ -1,6 +1,6 @@
 // What is rendered at which density: the laws of `yoro::eyes::foveation` of the library, for three's cameras.
 
-import { Matrix4, Vector3 } from 'three';
+import { Matrix4, Sphere, Vector3 } from 'three';
 import { project, tangents, viewsOf } from './views.js';
 
 /** The angle in degrees around the gaze that has all pixels, and pixels along each axis for each of an eye's beyond it. */
@@ -24,8 +24,8 @@ export function levelName(chosen, xr) {
   return chosen;
 }
 
-const clamp = (x, low, high) => Math.max(low, Math.min(x, high));
-
+/** Pixels of the wide level that show beside the inset's border. */
+const BORDER = 3;
 /**
  * Returns the views of a wide level of few pixels and of an inset of all of them, each as of `viewsOf`, and how the eyes are
  * composed of them; null if all pixels are to be rendered. Sizes do not depend on the gaze.
@@ -38,55 +38,64 @@ export function levelsOf(cameras, rendered, name, gaze, guardBand, zeroToOne, la
   const level = LEVELS[name];
   if (!level) return null;
   const [angle, density] = level;
-  const own = cameras[rendered], other = cameras[1 - rendered];
-  const { z: width, w: height } = own.viewport;
-  const of = cameras.map(({ projectionMatrix }) => tangents(projectionMatrix));
-  const s = of[rendered], t = of[1 - rendered];
-  const pixel = [(s.right - s.left) / width, (s.up - s.down) / height];
-  const { x, y, z } = gaze ? new Vector3().copy(gaze).transformDirection(between.copy(own.matrixWorld).invert()) : { x: 0, y: 0, z: -1 };
-  const ahead = Math.max(-z, 1e-3);
-  const reach = 2 * Math.tan(angle * Math.PI / 180);
-  // Along each axis: the inset's first pixel in the rendered eye, its size, and where it begins in the other eye. It stays
-  // within what both eyes see.
-  const place = [[x, s.left, t.left, width], [y, s.down, t.down, height]].map(([aside, low, otherLow, pixels], i) => {
-    const apart = Math.round((low - otherLow) / pixel[i]);
-    const first = Math.max(0, -apart), last = Math.min(pixels, pixels - apart);
-    const size = Math.min(Math.ceil(reach / pixel[i]) + 1, last - first);
-    const corner = clamp(Math.round((aside / ahead - low) / pixel[i] - size / 2), first, last - size);
-    return { size, corner, otherCorner: corner + apart };
+  const own = cameras[rendered], eyes = [0, 1], axes = [0, 1];
+  const shown = [own.viewport.z, own.viewport.w];
+  const frusta = cameras.map(({ projectionMatrix }) => tangents(projectionMatrix));
+  const lows = frusta.map((frustum) => frustum.map(([low]) => low));
+  const pixel = frusta[rendered].map(([low, high], i) => (high - low) / shown[i]);
+  const toEye = new Matrix4().copy(own.matrixWorld).invert();
+  const { x, y, z } = gaze ? new Vector3().copy(gaze).transformDirection(toEye) : { x: 0, y: 0, z: -1 };
+  // The inset's corners in both eyes. It stays within what both see.
+  const corners = [[], []];
+  const size = [x, y].map((aside, i) => {
+    const low = lows[rendered][i];
+    const apart = Math.round((low - lows[1 - rendered][i]) / pixel[i]);
+    const first = Math.max(0, -apart), last = Math.min(shown[i], shown[i] - apart);
+    const length = Math.min(Math.ceil(2 * Math.tan(angle * Math.PI / 180) / pixel[i]) + 1, last - first);
+    const middle = (aside / Math.max(-z, 1e-3) - low) / pixel[i];
+    const corner = Math.max(first, Math.min(Math.round(middle - length / 2), last - length));
+    corners[rendered][i] = corner;
+    corners[1 - rendered][i] = corner + apart;
+    return length;
   });
-  const size = place.map((along) => along.size);
-  const down = Math.min(s.down, t.down), up = Math.max(s.up, t.up);
-  const wideSize = [width * density, (up - down) / pixel[1] * density].map((n) => Math.max(Math.ceil(n - 1e-3), 1));
-  if (Math.min(...size) < 1 || wideSize[0] * wideSize[1] + size[0] * size[1] >= width * height) return null;
+  // The rows of both eyes' wide levels are the same.
+  const rows = [Math.min(lows[0][1], lows[1][1]), Math.max(frusta[0][1][1], frusta[1][1][1])];
+  const wideFrusta = frusta.map(([across]) => [across, rows]);
+  const wideSize = wideFrusta[rendered].map(([low, high], i) => Math.max(Math.ceil((high - low) / pixel[i] * density - 1e-3), 1));
+  if (Math.min(...size) < 1 || wideSize[0] * wideSize[1] + size[0] * size[1] >= shown[0] * shown[1]) return null;
 
-  const part = ({ matrixWorld, projectionMatrix }, frustum, viewport) => ({
-    matrixWorld, viewport, projectionMatrix: project(new Matrix4().copy(projectionMatrix), frustum),
+  const part = (eye, frustum, x, y, [z, w]) => ({
+    matrixWorld: cameras[eye].matrixWorld, viewport: { x, y, z, w }, projectionMatrix: project(new Matrix4().copy(cameras[eye].projectionMatrix), frustum),
   });
-  const wideEyes = cameras.map((eye, i) => part(eye, { ...of[i], down, up }, { x: 0, y: 0, z: wideSize[0], w: wideSize[1] }));
-  const insetEyes = cameras.map((eye, i) => {
-    const corner = place.map((along) => (i === rendered ? along.corner : along.otherCorner));
-    const [left, low] = [of[i].left, of[i].down].map((n, axis) => n + corner[axis] * pixel[axis]);
-    const frustum = { left, right: left + size[0] * pixel[0], down: low, up: low + size[1] * pixel[1] };
-    return part(eye, frustum, { x: eye.viewport.x + corner[0], y: eye.viewport.y + corner[1], z: size[0], w: size[1] });
-  });
-  const wide = viewsOf(wideEyes, rendered, guardBand, zeroToOne, largest, between);
-  const inset = viewsOf(insetEyes, rendered, NEAREST, zeroToOne, largest, between);
+  const insets = eyes.map((eye) => axes.map((i) => [0, size[i]].map((more) => lows[eye][i] + (corners[eye][i] + more) * pixel[i])));
+  const wide = viewsOf(eyes.map((eye) => part(eye, wideFrusta[eye], 0, 0, wideSize)), rendered, guardBand, zeroToOne, largest, between);
+  const places = eyes.map((eye) => ['x', 'y'].map((axis, i) => cameras[eye].viewport[axis] + corners[eye][i]));
+  const inset = viewsOf(eyes.map((eye) => part(eye, insets[eye], ...places[eye], size)), rendered, NEAREST, zeroToOne, largest, between);
   if (typeof wide === 'string' || typeof inset === 'string') return null;
-  wide.whole = [wideSize[0], wideSize[1] * (s.up - s.down) / (up - down)];
-  inset.whole = [width, height];
-  // Texture coordinates of the wide level at a pixel, and the inset's corners.
-  const composition = (eye, i, shown) => {
-    const { viewport: v } = eye;
-    const across = shown.right - shown.left, along = shown.up - shown.down;
-    const { x: left, y: low } = insetEyes[i].viewport;
+  // Pixels of the level that the eye's image would have.
+  wide.whole = frusta[rendered].map(([low, high], i) => wideSize[i] * (high - low) / (wideFrusta[rendered][i][1] - wideFrusta[rendered][i][0]));
+  inset.whole = shown;
+  // Texture coordinates of the wide level at a pixel, the inset's corners, and the eye's place.
+  inset.eyes = eyes.map((eye) => {
+    const image = eye === rendered ? wide.frustum : wideFrusta[eye];
+    const { x: left, y: low } = cameras[eye].viewport;
+    const scale = axes.map((i) => pixel[i] / (image[i][1] - image[i][0]));
     return {
-      wide_place: [pixel[0] / across, pixel[1] / along, (of[i].left - shown.left - v.x * pixel[0]) / across, (of[i].down - shown.down - v.y * pixel[1]) / along],
-      inset_rect: [left, low, left + size[0], low + size[1]],
-      target_origin: [v.x, v.y], target_size: [width, height], wide_scale: Math.abs(wide.uniforms.law[1]),
+      wide_place: [...scale, ...[left, low].map((corner, i) => scale[i] * ((lows[eye][i] - image[i][0]) / pixel[i] - corner))],
+      inset_rect: [...places[eye], ...places[eye].map((corner, i) => corner + size[i])],
+      target_origin: [left, low], target_size: shown, wide_scale: Math.abs(wide.uniforms.law[1]),
     };
+  });
+  // What lies within the inset in both eyes, and some pixels from its border, is not seen in the wide level.
+  const apart = Math.abs(between.elements[12]), sphere = new Sphere();
+  wide.hides = (object) => {
+    const bounds = object.boundingSphere ?? object.geometry?.boundingSphere;
+    if (!object.isMesh || !object.frustumCulled || !bounds) return false;
+    const { center, radius } = sphere.copy(bounds).applyMatrix4(object.matrixWorld);
+    const at = center.applyMatrix4(toEye).toArray();
+    return insets[rendered].every((sides, i) => sides.every((tangent, k) => (
+      (at[i] + at[2] * tangent) * (1 - 2 * k) + at[2] * BORDER * pixel[i] / density > (radius + apart) * Math.hypot(1, tangent)
+    )));
   };
-  inset.own = composition(own, rendered, wide.frustum);
-  inset.other = composition(other, 1 - rendered, tangents(wideEyes[1 - rendered].projectionMatrix));
   return [wide, inset];
 }

@@ -39,8 +39,11 @@ vec2 nearer=max(d.xy,d.zw);
 vec2 farther=min(d.xy,d.zw);
 gl_FragDepth=wide_scale*(max(nearer.x,nearer.y)-min(farther.x,farther.y))<1.0?mix(rows.x,rows.y,t.y):wide_at(ivec2(at));}}`;
 
+/** What differs between the eyes then. */
+const OF_EYES = ['wide_map', 'wide_depth', 'wide_place', 'inset_rect', 'target_origin', 'target_size'];
+
 // A surface that comes from beyond the inset's source is a hole at its border.
-const isInside = 'float column=2.0*(origins.x*gl_FragCoord.x+origins.y-law.y*gl_FragDepth)+1.0;float all_columns=float(source_size.x);seen=abs(column-all_columns)<=all_columns;';
+const isInside = 'float column=(origins.x*gl_FragCoord.x+origins.y-law.y*gl_FragDepth+0.5)/float(source_size.x);seen=column==clamp(column,0.0,1.0);';
 
 // Linear colour becomes what three's own materials would have written; where it covers a pixel in part, that part of it.
 const output = /* glsl */`
@@ -66,7 +69,7 @@ export class Passes {
   #renderer;
   #camera = new OrthographicCamera();
   /** What all passes read. */
-  #shared = { depth_map: { value: null }, color_map: { value: null }, tile_map: { value: null }, span_map: { value: null } };
+  #shared = {};
   #meshes = [];
   #maps = [map(), map()];
   #tiles;
@@ -85,14 +88,12 @@ export class Passes {
     this.#renderer = renderer;
     this.wide = wide;
     const [tileMap, spanMap] = this.#maps;
-    this.#shared.tile_map.value = tileMap.texture;
-    this.#shared.span_map.value = spanMap.texture;
-    for (const name of ['source_size', 'target_size', 'law', 'mirrored', 'row_offset', 'target_origin', 'far_displacement', 'near_displacement', 'columns', 'origins', 'span_place', 'rows', 'first_row', 'farthest', 'source_origin', 'texel', 'crop', 'covered']) this.#shared[name] = { value: null };
+    this.#shared.tile_map = { value: tileMap.texture };
+    this.#shared.span_map = { value: spanMap.texture };
     this.#tiles = this.#triangle(screenVertex, tiles);
     this.#spans = this.#triangle(screenVertex, spans);
-    const places = () => wide && Object.fromEntries(['wide_map', 'wide_depth', 'wide_place', 'inset_rect', 'target_origin', 'target_size', 'wide_scale'].map((name) => [name, { value: null }]));
-    this.own = this.#triangle(screenVertex, wide ? composed(copy, '') : copy, writesDepth, places(), linear);
-    this.other = this.#triangle(marchVertex, wide ? composed(march, isInside) : march, writesDepth, places(), linear);
+    this.own = this.#triangle(screenVertex, wide ? composed(copy, '') : copy, writesDepth, wide && OF_EYES, linear);
+    this.other = this.#triangle(marchVertex, wide ? composed(march, isInside) : march, writesDepth, wide && OF_EYES, linear);
     /** Both eyes' pictures, which are drawn before everything else, whether that is in a group with an order or not. */
     this.eyes = new Group();
     this.eyes.matrixWorldAutoUpdate = false;
@@ -112,7 +113,7 @@ export class Passes {
    */
   prepare(views, color, depth, isResolved) {
     const shared = this.#shared;
-    for (const name in views.uniforms) shared[name].value = views.uniforms[name];
+    for (const name in views.uniforms) (shared[name] ??= {}).value = views.uniforms[name];
     shared.color_map.value = color;
     shared.depth_map.value = isResolved ? this.#guessFrom(views.size, depth) : depth;
     [this.#tiles, this.#spans].forEach((mesh, i) => {
@@ -130,20 +131,21 @@ export class Passes {
    * Has the eyes be composed of this inset and of the wide level.
    *
    * @param {Object} views - The inset's, from `levelsOf`.
+   * @param {number} rendered - The rendered eye.
    * @param {WebGLRenderTarget} other - The wide level's other eye.
    */
-  compose(views, other) {
+  compose({ eyes }, rendered, other) {
     const { color_map: map, depth_map: depth } = this.wide.#shared;
     const set = ({ material }, values) => {
-      for (const name in values) material.uniforms[name].value = values[name];
+      for (const name in values) (material.uniforms[name] ?? {}).value = values[name];
     };
-    set(this.own, { ...views.own, wide_map: map.value, wide_depth: depth.value });
-    set(this.other, { ...views.other, wide_map: other.texture, wide_depth: other.depthTexture });
+    set(this.own, { ...eyes[rendered], wide_map: map.value, wide_depth: depth.value });
+    set(this.other, { ...eyes[1 - rendered], wide_map: other.texture, wide_depth: other.depthTexture });
   }
 
   /** Has pictures, whose alpha says how much of a pixel they cover, be drawn over what is there already, where they are nearer. */
   set isCovering(is) {
-    this.#shared.covered.value = is;
+    (this.#shared.covered ??= {}).value = is;
     for (const { material } of [this.own, this.other]) {
       material.blending = is ? CustomBlending : NoBlending;
       material.depthFunc = is ? LessEqualDepth : AlwaysDepth;
@@ -152,12 +154,12 @@ export class Passes {
 
   /** Draws how much of the prepared source, or of another one of its eye, is nearer than a depth: 16 x 16 shares. */
   drawNear(views, nearDepth, size = views.size, depth = this.#shared.depth_map.value) {
-    const value = (of) => ({ value: of });
     this.#share ??= new WebGLRenderTarget(16, 16, { depthBuffer: false, generateMipmaps: false });
-    this.#near ??= this.#triangle(screenVertex, nearFraction, {}, { depth_map: value(null), origin: value([0, 0]), size: value(null), near_depth: value(0), reversed: value(false) });
+    this.#near ??= this.#triangle(screenVertex, nearFraction, {}, ['depth_map', 'size']);
     const { uniforms } = this.#near.material;
     uniforms.depth_map.value = depth;
     uniforms.size.value = size;
+    uniforms.origin.value = [0, 0];
     uniforms.near_depth.value = nearDepth;
     uniforms.reversed.value = views.slope > 0;
     this.#draw(this.#near, this.#share);
@@ -180,7 +182,7 @@ export class Passes {
     if (!this.#guessed) {
       this.#guessed = new WebGLRenderTarget(1, 1, { ...exact, format: RedFormat });
       this.#guessed.depthTexture = new DepthTexture(1, 1, depth.type === FloatType ? FloatType : UnsignedIntType);
-      this.#guess = this.#triangle(screenVertex, guessedDepth, { ...writesDepth, colorWrite: false }, { depth_map: { value: null } });
+      this.#guess = this.#triangle(screenVertex, guessedDepth, { ...writesDepth, colorWrite: false }, ['depth_map']);
     }
     this.#guessed.setSize(...size);
     this.#guess.material.uniforms.depth_map.value = depth;
@@ -193,14 +195,18 @@ export class Passes {
     this.#renderer.render(mesh, this.#camera);
   }
 
-  /** Returns a triangle over the viewport, without vertex buffers. */
-  #triangle(vertexShader, fragmentShader, settings = {}, own = {}, linear = false) {
+  /** Returns a triangle over the viewport, without vertex buffers. It shares the uniforms that are not its own. */
+  #triangle(vertexShader, fragmentShader, settings = {}, own = [], linear = false) {
     const geometry = new BufferGeometry();
     geometry.setDrawRange(0, 3);
     const Material = linear ? ShaderMaterial : RawShaderMaterial;
     if (linear) fragmentShader = fragmentShader.replace('void main()', 'void picture()') + output;
+    const uniforms = {};
+    for (const [, name] of (vertexShader + fragmentShader).matchAll(/uniform .*?(\w+);/g)) {
+      uniforms[name] = own?.includes(name) ? { value: null } : this.#shared[name] ??= { value: null };
+    }
     const mesh = new Mesh(geometry, new Material({
-      name: 'yoro', vertexShader, fragmentShader, uniforms: { ...this.#shared, ...own }, glslVersion: GLSL3,
+      name: 'yoro', vertexShader, fragmentShader, uniforms, glslVersion: GLSL3,
       blending: NoBlending, depthTest: false, depthWrite: false, ...settings,
     }));
     mesh.frustumCulled = mesh.matrixAutoUpdate = mesh.matrixWorldAutoUpdate = false;
