@@ -1194,6 +1194,17 @@ typedef uint32_t YoroOutputFlags;
  * Source and target are both sRGB images: sampling decodes them, and writing encodes them.
  */
 #define YORO_OUTPUT_SRGB 2
+/**
+ * Leaves open what the rendered eye does not show, and silhouettes, for the caller's scene, drawn once more. The call
+ * clears depth to the farthest and stencil to 0 in the target's rectangle, and sets stencil to 1 in each pixel that it
+ * writes: draw the opaque scene for the other eye where stencil equals 0. Only for YORO_WARP_KIND_EYES.
+ */
+#define YORO_OUTPUT_OPEN_STENCIL 4
+/**
+ * The same for materials without stencil: depth is the nearest in each pixel that is written, so that the scene passes
+ * the depth test in open ones alone. Not together with YORO_OUTPUT_DEPTH.
+ */
+#define YORO_OUTPUT_OPEN_DEPTH 8
 
 /**
  * What happens to GL state that a call changes.
@@ -1328,7 +1339,7 @@ typedef struct {
   uint32_t depth_texture;
   /**
    * The framebuffer to draw into, or 0 for the window's. Its first colour attachment is written, and with
-   * YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
+   * YORO_OUTPUT_DEPTH or an OPEN flag its depth attachment, with stencil for YORO_OUTPUT_OPEN_STENCIL. None of the textures above may be attached to it.
    */
   uint32_t framebuffer;
   /**

@@ -292,7 +292,7 @@ impl SettingsArgs {
         let hud = self.no_hud.then(|| "hud=false".to_owned());
         // Android's properties may be empty; here a script's variable is.
         if let Some(empty) = self.overrides.iter().find(|pair| pair.trim_end().ends_with('=')) {
-            bail!("--set {empty} has no value: give one, or leave it out");
+            anyhow::bail!("--set {empty} has no value: give one, or leave it out");
         }
         let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
         Ok(defaults.changed(self.settings.as_deref(), overrides)?)
