@@ -336,3 +336,19 @@ impl Script {
         past.max_by_key(|input| input.frame).map_or([0.0; 2], |input| input.value)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_inset_may_be_as_large_as_the_eye() {
+        let insets = Insets { size: [64; 2], radius_degrees: 89.0, gaze: vec![(0, [7.0, -3.0])] };
+        let script = Script { insets: Some(insets), ..Script::default() };
+        for (eye, eyes) in script.eyes.iter().enumerate() {
+            let wide = eyes.fov_degrees.map(|angle| angle.to_radians().tan());
+            let inset = script.inset(eye, 0.1, 0).unwrap();
+            assert!(inset.iter().zip(wide).all(|(a, b)| (a - b).abs() < 1e-5), "{inset:?}, {wide:?}");
+        }
+    }
+}

@@ -96,7 +96,8 @@ fn a_jump_is_no_motion() {
     };
     let leap = [0.0, 0.0, 0.0, -0.2, 0.3, 0.6];
     let step = Interpolation::Step;
-    let jumps: [(&str, &dyn Fn(&mut Motion)); 4] = [
+    type Change<'a> = &'a dyn Fn(&mut Motion);
+    let jumps: [(&str, Change); 4] = [
         ("leaps", &|motion| {
             motion.nodes[0].moves = Some(Track { interpolation: step, ..track([0.0, 1.05], leap) })
         }),
