@@ -1,7 +1,7 @@
 //! The add-on for Godot: its development project, and its tests.
 
 mod pictures;
-mod session;
+pub(crate) mod session;
 mod test;
 
 use std::path::PathBuf;

@@ -13,35 +13,47 @@ use crate::apt;
 use crate::maintain::godot;
 use crate::maintain::monado::{self, Running};
 
-/// Godot and Monado, with a virtual display.
-pub struct Session {
-    godot: PathBuf,
-    display: String,
-    _screen: Running,
+/// A virtual display.
+pub struct Screen {
+    /// The value of DISPLAY.
+    pub display: String,
+    _server: Running,
 }
 
-impl Session {
-    /// Sets up what is missing, and starts the display.
-    pub fn begin() -> anyhow::Result<Self> {
-        let godot = godot::make()?;
+impl Screen {
+    /// Starts the display. Installs its server if it is missing.
+    pub fn start() -> anyhow::Result<Self> {
         if apt::find_program("Xvfb").is_none() {
             apt::install(&[&["xvfb"]])?;
         }
-        let mut screen = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"])
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp", "-noreset"])
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
             .context("Xvfb cannot be started")?;
-        let output = screen.stdout.take();
-        let screen = Running(screen);
+        let output = server.stdout.take();
+        let server = Running(server);
         let mut number = String::new();
         BufReader::new(output.context("Xvfb says nothing")?).read_line(&mut number)?;
         if number.trim().is_empty() {
             bail!("Xvfb gives no display");
         }
-        Ok(Self { godot, display: format!(":{}", number.trim()), _screen: screen })
+        Ok(Self { display: format!(":{}", number.trim()), _server: server })
+    }
+}
+
+/// Godot and Monado, with a virtual display.
+pub struct Session {
+    godot: PathBuf,
+    screen: Screen,
+}
+
+impl Session {
+    /// Sets up what is missing, and starts the display.
+    pub fn begin() -> anyhow::Result<Self> {
+        Ok(Self { godot: godot::make()?, screen: Screen::start()? })
     }
 
     /// Returns the path of Godot.
@@ -56,7 +68,7 @@ impl Session {
         let file = File::create(&log).with_context(|| format!("{} cannot be written", log.display()))?;
         let child = Command::new(self.program())
             .args(arguments)
-            .env("DISPLAY", &self.display)
+            .env("DISPLAY", &self.screen.display)
             .env("XDG_RUNTIME_DIR", folder)
             // All runs share the cache of compiled shaders.
             .envs(

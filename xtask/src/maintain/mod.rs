@@ -1,11 +1,14 @@
 //! `cargo xtask maintain`: the commands that only maintainers run, and the programs that tests use.
 
+mod conformance;
 pub(crate) mod direct3d;
 pub mod estimate;
 pub(crate) mod godot;
 pub(crate) mod hello_xr;
 pub mod monado;
 mod renew;
+
+use std::path::PathBuf;
 
 use clap::Subcommand;
 
@@ -37,6 +40,13 @@ pub(crate) enum Task {
     Monado,
     /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
     HelloXr,
+    /// Run the automatic cases of a built OpenXR conformance suite on Monado, alone and through the API layer, and compare
+    /// them with the table in xtask/src/maintain/conformance.txt
+    Conformance {
+        /// The folder of the suite's conformance_cli
+        #[arg(long, value_name = "DIR")]
+        suite: PathBuf,
+    },
     /// Set up Godot, a game engine, with Monado below target/, and print how to use it
     Godot,
 }
@@ -53,6 +63,7 @@ pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Renew => renew::renew()?,
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
+        Task::Conformance { suite } => conformance::perform(&suite)?,
         Task::Godot => (godot::usage()?, true),
     };
     console::print(&text);

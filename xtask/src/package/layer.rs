@@ -19,7 +19,7 @@ use super::{VERSION, compile, zip};
 pub const LIBRARY: &str = "libyoro_openxr_layer.so";
 const PACKAGE: &str = "yoro-openxr-layer";
 /// The manifest of an application's own layer, which also fits an installed one, apart from the library's path.
-const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
+pub const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
 /// The folder of the manifest in the archive.
 const PLACE: &str = "share/openxr/1/api_layers/explicit.d";
 
@@ -89,8 +89,13 @@ pub fn archive(machine: Machine, folder: &Path) -> anyhow::Result<PathBuf> {
 /// relative to the manifest.
 fn installed(manifest: &str) -> String {
     let up = "../".repeat(PLACE.split('/').count());
+    explicit_manifest(manifest, &format!("{up}lib/{LIBRARY}"))
+}
+
+/// Returns the manifest of an explicit layer with the library at this path.
+pub fn explicit_manifest(manifest: &str, library: &str) -> String {
     let lines = manifest.lines().filter(|line| !line.contains("disable_environment"));
-    let text = lines.collect::<Vec<_>>().join("\n").replace(LIBRARY, &format!("{up}lib/{LIBRARY}"));
+    let text = lines.collect::<Vec<_>>().join("\n").replace(LIBRARY, library);
     text.replace("\n    ],\n  }", "\n    ]\n  }") + "\n"
 }
 

@@ -13,8 +13,8 @@ use glow::HasContext as _;
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
-const PURE_CALLS: usize = 60_000;
-const GL_CALLS: usize = 6_000;
+const PURE_CALLS: usize = 100_000;
+const GL_CALLS: usize = 12_000;
 
 /// Structures that are right, and make warps of all kinds.
 struct Good {

@@ -8,7 +8,7 @@ use std::ffi::c_char;
 use std::ptr::{null, null_mut};
 
 use ash::vk;
-use common::{Mistakes, zeroed};
+use common::{Mistakes, Random, is_documented, zeroed};
 use yoro_c::*;
 
 /// A device with a command buffer that is being recorded. It lives as long as the process.
@@ -354,6 +354,113 @@ fn a_context_with_a_composer_records_compositions() {
         let plain = create(&gpu.info()).unwrap();
         assert_eq!(yoro_vk_register_levels(plain, &levels, &mut frame.levels), YORO_ERROR_UNSUPPORTED);
         assert_eq!(yoro_destroy(plain), YORO_OK);
+    }
+}
+
+/// Damages an image's description. The image and its layer stay: they are Vulkan's to judge.
+fn damaged_plane(random: &mut Random, image: YoroVkImage) -> YoroVkImage {
+    let formats = [image.format.as_raw(), image.format.as_raw(), 0, -5, i32::MAX, 1 << 30];
+    let uint = vk::Format::R8G8B8A8_UINT.as_raw();
+    let format = vk::Format::from_raw(random.pick(&[&formats[..], &[uint]].concat()));
+    let handle = random.pick(&[image.image, image.image, image.image, vk::Image::null()]);
+    let mut state = |state: YoroVkState| if random.below(3) == 0 { random.damaged(&state, 0) } else { state };
+    YoroVkImage { image: handle, format, before: state(image.before), after: state(image.after), ..image }
+}
+
+/// Random and special numbers, wrong ids and formats, in any order and in contexts of any kind: documented results, and
+/// what is right is accepted afterwards.
+#[test]
+fn a_vulkan_host_may_pass_any_numbers() {
+    const CALLS: usize = 8_000;
+    let Some(gpu) = Gpu::open() else { return };
+    let mut random = Random(3);
+    let (source, target) = images(&gpu);
+    let kinds = [YORO_WARP_KIND_EYES, YORO_WARP_KIND_POSE, YORO_WARP_KIND_MOTION];
+    for _ in 0..60 {
+        let mut wrong = YoroVkInfo { warp_kind: random.pick(&kinds), composes: 1, ..gpu.info() };
+        let numbers: [fn(&mut YoroVkInfo, u32); 8] = [
+            |i, n| i.color_format = vk::Format::from_raw(n as i32),
+            |i, n| i.depth_format = vk::Format::from_raw(n as i32),
+            |i, n| i.max_source_width = n,
+            |i, n| i.max_target_height = n,
+            |i, n| i.queue_family = n,
+            |i, n| i.warp_kind = n,
+            |i, n| i.composes = n,
+            |i, n| i.timed_frames = n % 1000,
+        ];
+        (0..2).for_each(|_| random.pick(&numbers)(&mut wrong, random.word()));
+        match create(&wrong) {
+            // SAFETY: just made.
+            Ok(context) => assert_eq!(unsafe { yoro_destroy(context) }, YORO_OK),
+            Err(code) => assert!(is_documented(code), "{wrong:?}: {code}"),
+        }
+    }
+    let info = YoroVkInfo { composes: 1, ..gpu.info() };
+    let contexts = kinds.map(|warp_kind| create(&YoroVkInfo { warp_kind, ..info }).unwrap());
+    let frames = contexts.map(|context| registered(&gpu, context));
+    let pose = YoroPoseWarp {
+        source_width: 200,
+        source_height: 120,
+        target_width: 160,
+        target_height: 120,
+        homography: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 20.0, 0.0, 1.0],
+        source_law: [0.0, 10.0],
+        target_law: [0.0, 10.0],
+        nearest: 1.0,
+        ..YoroPoseWarp::default()
+    };
+    let motion = YoroMotionWarp { warp: WARP, ..YoroMotionWarp::default() };
+    let mut accepted = 0;
+    for number in 0..CALLS {
+        let i = random.below(contexts.len());
+        let (context, mut id) = (random.pick(&contexts), 0);
+        // The pointer at the end stays null.
+        let frame = YoroVkFrame { uses: null(), ..random.damaged(&frames[i], 4) };
+        let commands = random.pick(&[gpu.commands, gpu.commands, gpu.commands, vk::CommandBuffer::null()]);
+        let which = random.below(8);
+        // SAFETY: live handles or null, complete structures, and numbers that are checked.
+        let code = unsafe {
+            match which {
+                0 | 1 => {
+                    let mut source = YoroVkSource {
+                        color: source.color,
+                        depth: source.depth,
+                        ..random.damaged(&source, 0)
+                    };
+                    // The images' own size is Vulkan's to judge.
+                    (source.width, source.height) = (source.width.min(256), source.height.min(128));
+                    source.color = damaged_plane(&mut random, source.color);
+                    let code = yoro_vk_register_source(context, &source, &mut id);
+                    assert!(code != YORO_OK || yoro_vk_release_source(context, id) == YORO_OK);
+                    code
+                }
+                2 => {
+                    let color = damaged_plane(&mut random, target.color);
+                    let depth = damaged_plane(&mut random, target.depth);
+                    let target = YoroVkTarget { color, depth, ..target };
+                    let code = yoro_vk_register_target(context, &target, &mut id);
+                    assert!(code != YORO_OK || yoro_vk_release_target(context, id) == YORO_OK);
+                    code
+                }
+                3 => yoro_vk_record_pose(context, commands, &random.damaged(&pose, 0), &frame),
+                4 => yoro_vk_record_motion(context, commands, &random.damaged(&motion, 0), &frame),
+                5 => yoro_vk_release_source(context, random.word().max(1000)),
+                6 => yoro_gl_prepare(context, &WARP),
+                _ => yoro_vk_record(context, commands, &random.damaged(&WARP, 0), &frame),
+            }
+        };
+        assert!(is_documented(code), "call {number}, {which}: {code}");
+        accepted += usize::from(code == YORO_OK);
+    }
+    println!("{CALLS} calls, {accepted} accepted");
+    assert!((CALLS / 10..CALLS * 9 / 10).contains(&accepted), "{accepted}");
+    // SAFETY: live handles and complete structures; the commands are executed before the contexts go.
+    unsafe {
+        assert_eq!(yoro_vk_record(contexts[0], gpu.commands, &WARP, &frames[0]), YORO_OK);
+        assert_eq!(yoro_vk_record_pose(contexts[1], gpu.commands, &pose, &frames[1]), YORO_OK);
+        assert_eq!(yoro_vk_record_motion(contexts[2], gpu.commands, &motion, &frames[2]), YORO_OK);
+        gpu.device.end_command_buffer(gpu.commands).unwrap();
+        assert!(contexts.into_iter().all(|context| yoro_destroy(context) == YORO_OK));
     }
 }
 
