@@ -180,17 +180,11 @@ pub enum LoadError {
 }
 
 /// Loads a built-in scene by name, or a file, in the given style or its own.
-///
-/// # Errors
-/// [`LoadError`].
 pub fn load(name: &str, seed: u64, style: Option<ShadingStyle>) -> Result<Scene, LoadError> {
     load_animated(name, seed, style, None)
 }
 
 /// Like [`load`], but of a glTF file's animations plays only the one with this name or number, if one is given.
-///
-/// # Errors
-/// [`LoadError`].
 pub fn load_animated(
     name: &str,
     seed: u64,

@@ -72,6 +72,18 @@ float segment_end(float x, int tile_row, bool below, uint shift) {
     return x + lowest_bit(marks | 0x10000u >> within);
 }
 
+#ifdef OPEN_HOLES
+// True if the surface that a pixel shows ends at column x, or at the next one if the pixel shows that, too: the
+// column's neighbour is farther by more than a pixel of displacement. The outermost pixel of a surface shows
+// something of what lies beside it in the source, and not of what lies there for this eye.
+bool is_outermost(float x, vec2 depths, bool shows_next) {
+    float before = depth_sample(vec2(column_at(x - 1.0), row_at(0.0)));
+    float after = depth_sample(vec2(column_at(x + 2.0), row_at(0.0)));
+    float pixel = MAX_STRETCH - 1.0;
+    return law.y * (depths.x - before) >= pixel || (shows_next && law.y * (depths.y - after) > pixel);
+}
+#endif
+
 // What a search has found so far beside the pixel.
 struct Beside {
     // Column and depth of the hole's background; the column is negative if there is none.
@@ -152,6 +164,12 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     surface.depth = own ? mix(at.depths.x, at.depths.y, t) : beside.edge_depth;
     float away = x - origin + law.y * surface.depth;
     surface.hole = !found && abs(away) >= 0.5;
+#ifdef OPEN_HOLES
+    bool shows_next = at.b - at.a < MAX_STRETCH;
+    if (surface.hole || beside.rim >= 0.0 || (found && is_outermost(at.x, at.depths, shows_next))) {
+        discard;
+    }
+#endif
     vec4 color = color_sample(vec2(column_at(surface.source), row_at(0.0)));
     if (surface.hole) {
         color = fill_hole(Edge(x, surface.depth), color, away);

@@ -9,6 +9,7 @@ uniform float material_id;
 layout(location = 0) out vec4 out_color;
 #include "include/carried.glsl"
 #include "include/seam.glsl"
+#include "include/hole_bloom.glsl"
 #ifdef REPROJECTED
 #include "include/reprojection.glsl"
 #endif
@@ -37,6 +38,7 @@ void main() {
     vec3 c = tonemap(exposure * aerial(shade(surface, v_position), distance));
 #endif
 #endif
+    c = with_view_bloom(c, gl_FragCoord.z);
     CARRY_DEPTH(gl_FragCoord.z)
 #if defined(CUTOUT) && defined(MULTISAMPLE)
     out_color = vec4(c, coverage(color.a));

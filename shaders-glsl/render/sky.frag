@@ -2,7 +2,7 @@
 #include "include/shade.glsl"
 
 uniform vec2 view_origin;   // lower left corner of the view in the target
-uniform vec2 view_texel;    // 1 / size of the view in pixels
+uniform vec2 pixel_extent;  // 1 / size of the view in pixels
 uniform float exposure;
 // Of each view, in world axes at distance 1: the ray through the lower left corner, from the left edge to the right, from
 // the bottom edge to the top.
@@ -17,10 +17,11 @@ uniform mat3 rays[1];
 
 layout(location = 0) out vec4 out_color;
 #include "include/carried.glsl"
+#include "include/hole_bloom.glsl"
 
 void main() {
-    vec3 ray = RAYS * vec3(1.0, (gl_FragCoord.xy - view_origin) * view_texel);
-    vec3 c = tonemap(exposure * background(normalize(ray)));
+    vec3 ray = RAYS * vec3(1.0, (gl_FragCoord.xy - view_origin) * pixel_extent);
+    vec3 c = with_view_bloom(tonemap(exposure * background(normalize(ray))), gl_FragCoord.z);
     out_color = vec4(c, luma(c));
     CARRY_DEPTH(0.0)
 }

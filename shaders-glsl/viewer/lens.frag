@@ -2,9 +2,22 @@
 // towards the borders of the lens and of the image.
 
 // The image is display-referred sRGB, as the screen takes it: one texture, or levels that are composed on the way.
+// A panel is drawn over composed levels, since letters cannot be read in a level of few pixels.
 #ifdef LEVELS
 #include "include/levels.glsl"
-#define IMAGE(uv) composed(uv)
+#include "include/panel.glsl"
+uniform vec4 panel_place;  // place in the panel at a place in the eye's image: panel_place.xy * place + panel_place.zw
+
+vec4 with_panel(vec2 place) {
+    vec4 color = composed(place);
+    vec2 at = panel_place.xy * place + panel_place.zw;
+    if (at == clamp(at, 0.0, 1.0)) {
+        vec4 over = panel_color(at);
+        color = mix(color, over, over.a);
+    }
+    return color;
+}
+#define IMAGE(uv) with_panel(uv)
 #else
 uniform sampler2D image;
 #define IMAGE(uv) texture(image, uv)

@@ -44,6 +44,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
         "mono",
         "yoro-gather",
         "yoro-paper",
+        "yoro-holes-rendered",
     ] {
         // Each contender is either measured or skipped with a reason.
         let rows = whole.iter().filter(|r| r["contender"] == contender);
@@ -64,6 +65,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
         values.iter().sum::<f64>() / values.len() as f64
     };
     assert!(mean("yoro-gather", "psnr") > mean("mono", "psnr") + 3.0);
+    assert!(mean("yoro-holes-rendered", "psnr") > mean("yoro-gather", "psnr"));
     assert!(mean("yoro-gather", "flip") < mean("mono", "flip"));
     assert!(mean("yoro-paper", "visible_psnr") > mean("yoro-paper", "hole_psnr"));
     assert!(mean("yoro-gather", "texture_mib") > mean("mono", "texture_mib"));
@@ -162,9 +164,8 @@ fn sweeps_have_their_points_and_baselines() {
 fn the_other_experiments_are_measured_and_reported() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    let line =
-        "bench reprojection half-rate foveation --quick --scene talk --size 64x64 --rounds 1 --out r.jsonl";
-    succeed(at, line);
+    let options = "--quick --scene talk --size 64x64 --rounds 1 --out r.jsonl";
+    succeed(at, &format!("bench reprojection half-rate foveation stream {options}"));
     let records = records(&at.join("r.jsonl"));
     let who = |label: &str| -> Vec<&str> {
         let measured = of_kind(&records, "measurement").into_iter().filter(|m| m["label"] == label);
@@ -173,16 +174,29 @@ fn the_other_experiments_are_measured_and_reported() {
     assert_eq!(who("canted eyes"), ["same-image", "gather-parallel-eyes", "any-view"]);
     assert_eq!(who("walk, 4 late"), ["same-image", "rotation", "any-view"]);
     for label in ["still", "walk, foveation medium, 90 degrees"] {
-        let runtime = ["runtime-two-eyes", "runtime-one-eye", "runtime-made-vectors", "rotation"];
+        let runtime = [
+            "runtime-two-eyes",
+            "runtime-one-eye",
+            "runtime-one-eye-holes-rendered",
+            "runtime-made-vectors",
+            "rotation",
+        ];
         let rest = ["yoro-full-rate", "same-image", "conventional"];
         assert_eq!(who(label), [&runtime[..], &rest].concat(), "{label}");
     }
     assert_eq!(who("60 degrees").len(), 9);
     succeed(at, "report r.jsonl --out out");
     let results = fs::read_to_string(at.join("out/report.md")).unwrap();
-    for heading in ["## Reprojection", "## Half rate", "## Foveation"] {
-        assert!(results.contains(heading), "{heading}: {results}");
+    for needed in
+        ["## Reprojection", "## Half rate", "## Foveation", "one eye and depth, QP 20", "the paper's -39.6 %"]
+    {
+        assert!(results.contains(needed), "{needed}: {results}");
     }
+    // Three quantizers, from fine to coarse: each costs more than the next one.
+    let rates = results.lines().filter_map(|line| line.strip_prefix("| two eyes, rotation, QP "));
+    let rates = rates.filter_map(|line| line.split(" | ").nth(1)?.trim_end_matches(" |").parse().ok());
+    let rates: Vec<f64> = rates.take(3).collect();
+    assert!(rates.len() == 3 && rates.is_sorted_by(|a, b| a > b), "{rates:?}: {results}");
 }
 
 #[test]

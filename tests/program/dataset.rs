@@ -96,33 +96,20 @@ fn a_folder_is_continued_whatever_its_numbers() {
     assert!(succeed(dir.path(), line).stdout.contains("(0 new)"));
 }
 
-/// A patcher gives the same result for image files as for a group in memory.
-#[test]
-fn synthesize_with_a_patcher() {
-    let dir = tempfile::tempdir().unwrap();
-    succeed(dir.path(), "dataset prototype --groups 1 --size 96 --out data --patcher telea");
-    let scene = dir.path().join("data/prototype");
-    let command = group(&scene, 0)["synthesize"].as_str().unwrap().to_owned();
-    assert!(command.contains(" --patcher telea"), "{command}");
-    succeed(&scene, command.strip_prefix("yoro ").unwrap());
-    let load = |name: &str| yoro_media::load_color(&scene.join(name)).unwrap();
-    let Psnr(again) =
-        psnr(&load("synthesized/000000.png"), &load("patched/000000.png"), Channels::Rgb).unwrap();
-    assert!(again > 45.0, "{again:.2} dB");
-}
-
-/// The command in a group's JSON reproduces the other eye, for either eye and either depth convention.
+/// The command in a group's JSON reproduces the other eye, for either eye and either depth convention, and by a patcher.
 #[test]
 fn groups_go_into_synthesize() {
     for options in [
         "",
         "--dominant left --reversed-z --far inf --fov-y-degrees 75 --ipd 0.05",
         "--pipeline paper --imbuffer 2 --no-linear-interpolation",
+        "--patcher telea",
     ] {
         let dir = tempfile::tempdir().unwrap();
         succeed(dir.path(), &format!("dataset prototype --groups 2 --size 160x128 --out data {options}"));
         let scene = dir.path().join("data/prototype");
         let command = group(&scene, 1)["synthesize"].as_str().unwrap().to_owned();
+        assert_eq!(command.contains(" --patcher telea"), options.contains("telea"), "{command}");
         let line = format!("{} --mask-out holes.png", command.strip_prefix("yoro ").unwrap());
         succeed(&scene, &line);
         let load = |name: &str| yoro_media::load_color(&scene.join(name)).unwrap();

@@ -19,9 +19,7 @@ fn write(folder: &Path, method: &str, scene: &str, repetition: u32, milliwatts: 
             serial: "MADEUP1".into(),
             manufacturer: "Maker".into(),
             model: "Model 1".into(),
-            android: "14".into(),
-            capacity_mah: Some(4000.0),
-            simulated: false,
+            ..DeviceInfo::default()
         },
         experiment: Some("made-up".into()),
         method: method.into(),

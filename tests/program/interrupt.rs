@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
+use std::time::{Duration, Instant};
 
 use crate::program::{Run, interrupt, press_ctrl_c, yoro};
 
@@ -17,12 +18,22 @@ fn ctrl_c_ends_soon_and_leaves_whole_files() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out");
     let line = "render prototype --frames 5000 --size 64x64";
-    interrupt(dir.path(), line, || files(&out).len() >= 12);
+    let ended = interrupt(dir.path(), line, || files(&out).len() >= 12);
+    assert!(ended.stderr.contains("of 5000 frames are in out"), "{}", ended.stderr);
     for path in files(&out) {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         assert!(name.starts_with("prototype-") && name.ends_with(".png"), "{name} was left behind");
         image::open(&path).unwrap_or_else(|error| panic!("{name}: {error}"));
     }
+}
+
+#[test]
+fn ctrl_c_ends_a_wait_before_the_picture() {
+    let dir = tempfile::tempdir().unwrap();
+    let start = Instant::now();
+    let line = "view prototype --png view.png --screen 400x200 --dpi 70 --do wait:60";
+    interrupt(dir.path(), line, || start.elapsed() > Duration::from_secs(3));
+    assert_eq!(files(dir.path()).len(), 0);
 }
 
 #[test]

@@ -111,6 +111,8 @@ fn options_out_of_range() {
         ("render prototype --frames 0", &["--frames"]),
         ("render prototype --pipeline magic", &["--pipeline", "gather"]),
         ("view prototype --png view.png --set history=full", &["no setting \"history\"", "choose one of"]),
+        ("view prototype --png view.png --set duration=1e300", &["cannot be 1e300: give seconds above 0"]),
+        ("view prototype --png view.png --set msaa=", &["--set msaa= has no value"]),
         ("render prototype --imbuffer 0", &["--imbuffer", "512x512"]),
         ("render prototype --position 1,2", &["--position", "three numbers"]),
         ("render prototype --position 1e38,0,0", &["--position", "up to 100000 m from the origin"]),
@@ -192,7 +194,7 @@ fn numbers_have_a_remedy() {
         ("render prototype --seed 1.5", "give a whole number from 0"),
         ("render prototype --pose=-2", "give a whole number from 0"),
         ("render prototype --frames 99999999999", "give a whole number from 1 to 100000"),
-        ("view --png v.png --yaw-degrees left", "give a finite number"),
+        ("view --png v.png --yaw-degrees left", "give degrees from -360 to 360"),
         ("device farm husky --scenarios 4", "give a whole number from 1 to 3"),
         ("study plan --participants none", "give a whole number from 1 to 1000"),
     ] {

@@ -87,17 +87,23 @@ pub fn interrupt(folder: &Path, line: &str, begun: impl Fn() -> bool) -> Run {
         thread::sleep(Duration::from_millis(20));
     }
     press_ctrl_c(&child);
-    let start = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        if start.elapsed() > Duration::from_secs(20) {
-            child.kill().unwrap();
-            panic!("yoro {line}: it goes on after Ctrl-C");
-        }
-        thread::sleep(Duration::from_millis(20));
-    }
-    let run = Run::new(child.wait_with_output().unwrap());
+    let run = in_time(child, Duration::from_secs(20));
     assert_eq!(run.code, Some(130), "yoro {line}: {}", run.stderr);
     run
+}
+
+/// Waits for the end of a running program, which must come in time.
+#[track_caller]
+pub fn in_time(mut child: Child, limit: Duration) -> Run {
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > limit {
+            child.kill().unwrap();
+            panic!("it goes on: {}", Run::new(child.wait_with_output().unwrap()).stderr);
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    Run::new(child.wait_with_output().unwrap())
 }
 
 /// Sends a running program the signal of Ctrl-C.

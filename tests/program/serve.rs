@@ -4,12 +4,13 @@ use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Child, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use image::imageops;
 use tungstenite::protocol::Role;
 use tungstenite::{Message, WebSocket};
+use xtask::maintain::monado::Running;
 use yoro::eyes::{Eye, EyePair, Frustum, Pose};
 use yoro_bench::streaming::Receiver;
 use yoro_context::{Backend, Headless};
@@ -22,17 +23,10 @@ use crate::web::video::record3d;
 
 /// A server, which is killed when this is dropped.
 struct Serving {
-    child: Child,
+    _child: Running,
     /// Address and port.
     host: String,
     token: String,
-}
-
-impl Drop for Serving {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
 }
 
 type Socket = WebSocket<TcpStream>;
@@ -51,7 +45,7 @@ impl Serving {
         let host = first.strip_prefix("open http://").unwrap().split('/').next().unwrap().to_owned();
         assert!(host.starts_with("127.0.0.1:"), "{first}");
         let token = first.split(['=', '&']).nth(1).unwrap().to_owned();
-        Serving { child, host, token }
+        Serving { _child: Running(child), host, token }
     }
 
     /// Sends a request's lines after the first, and returns the beginning of the answer.

@@ -4,8 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::{Quat, Vec3};
 use image::{Rgb, RgbImage};
@@ -25,7 +24,7 @@ use yoro_render::stereo::{Method, StereoFrame, StereoSession};
 use yoro_settings::Settings;
 use yoro_viewer::{render_settings, stereo_options};
 
-use crate::program::{Run, finish, yoro};
+use crate::program::{self, Run, finish, yoro};
 
 const ONE_SAMPLE: &str = "msaa=1";
 /// A scene that is there at once, in the folder of each simulated runtime.
@@ -42,18 +41,8 @@ fn cheap() -> impl Iterator<Item = &'static str> {
 /// Runs a command, which must end in time.
 #[track_caller]
 fn in_time(command: &mut Command) -> Run {
-    let mut child =
-        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
-    let start = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        if start.elapsed() > LIMIT {
-            child.kill().unwrap();
-            let output = child.wait_with_output().unwrap();
-            panic!("it hangs: {}", String::from_utf8_lossy(&output.stderr));
-        }
-        thread::sleep(Duration::from_millis(5));
-    }
-    Run::new(child.wait_with_output().unwrap())
+    let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    program::in_time(command.spawn().expect("the program starts"), LIMIT)
 }
 
 /// The simulated runtime with a script and its log.

@@ -7,10 +7,13 @@ use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
 use yoro::opengl::{AnyView, Composer, Gather, GlState, GuessedDepth, Motion, Options, Outputs};
+use yoro::synthesis::{HoleMark, Holes};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
-use yoro_render::stereo::{ImBufferSize, Method, Paper, PaperOptions, StereoOptions, StereoSession};
+use yoro_render::stereo::{
+    HoleMethod, ImBufferSize, Method, Paper, PaperOptions, StereoOptions, StereoSession,
+};
 use yoro_render::{DepthCopy, GpuScene, PreparedScene, RenderSettings, Renderer};
 use yoro_shaders::{Assembled, MissingFile};
 use yoro_test_support::record::Recorder;
@@ -58,6 +61,11 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         AnyView::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
         Motion::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
     }
+    for mark in [HoleMark::Stencil, HoleMark::Depth] {
+        let outputs =
+            Outputs { depth: mark == HoleMark::Stencil, holes: Holes::Open(mark), ..Outputs::default() };
+        Gather::new(gl, &Options::default(), outputs)?;
+    }
     Composer::new(gl, GlState::Leave, false)?;
     if variants == Variants::Every {
         let sources = [(true, false, false), (false, true, false), (true, true, false), (false, false, true)];
@@ -91,7 +99,7 @@ fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &Scene) -> anyhow
     let mut scene = PreparedScene::new(gl, scene.clone(), settings)?;
     for method in Method::ALL {
         if is_tested(method, settings, gl) {
-            let options = StereoOptions { near_field: Some(1.0), ..StereoOptions::default() };
+            let options = StereoOptions { holes: HoleMethod::Rendered, ..StereoOptions::default() };
             StereoSession::new(gl, method.into(), settings, &options)?.prepare(&mut scene)?;
         }
     }
@@ -152,8 +160,9 @@ fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
 }
 
 fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
-    for defines in [vec![], vec![("CHROMATIC", String::new())]] {
+    for names in [&[][..], &["CHROMATIC"], &["LEVELS"], &["CHROMATIC", "LEVELS"]] {
         let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
+        let defines: Vec<_> = names.iter().map(|name| (*name, String::new())).collect();
         Program::new(gl, source, &defines)?;
     }
     Program::new(gl, ShaderSource::Screen("viewer/decoded.frag"), &[])?;

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 
 use crate::apt::{self, Need};
 
@@ -96,6 +96,13 @@ pub fn vulkan() -> bool {
         eprintln!("warning: tests of Vulkan will be left out: {error:#}");
     }
     needs(&VULKAN).iter().all(|need| need.found.is_ok())
+}
+
+/// Installs the compiler and the runtime for tests in C#, and returns the runtime.
+pub fn mono() -> anyhow::Result<PathBuf> {
+    let needs = || vec![Need::program("mcs", &["mono-mcs"]), Need::program("mono", &["mono-runtime"])];
+    apt::install_missing(needs, true)?;
+    apt::find_program("mono").context("it cannot be found")
 }
 
 /// Returns the browser for tests of pages. Installs one if necessary and apt has one.

@@ -96,6 +96,7 @@ impl Sources {
                 }
             }
         }
+        mistakes.extend(settings.contradiction().map(|error| error.to_string()));
         (settings, mistakes)
     }
 }

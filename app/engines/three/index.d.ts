@@ -1,6 +1,8 @@
-import type { ArrayCamera, Camera, DepthTexture, Object3D, PerspectiveCamera, StereoCamera, Texture, WebGLRenderer, WebGLRenderTarget } from 'three';
+import type { ArrayCamera, Camera, DepthTexture, Object3D, PerspectiveCamera, StereoCamera, Texture, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
 
 export type Way = 'synthesized' | 'rendered';
+
+export type Foveation = 'off' | 'low' | 'medium' | 'high';
 
 export interface StereoSynthesisOptions {
   /** Default: `'auto'`. */
@@ -13,6 +15,8 @@ export interface StereoSynthesisOptions {
   guardBand?: number;
   /** With `auto`, both eyes are rendered while half of the view is nearer than this, in metres. Default: 0.4. */
   nearLimit?: number;
+  /** Default: null. */
+  foveation?: Foveation | null;
   /** The eyes' distance on a canvas in metres. Headsets have their own. Default: 0.064. */
   eyeSeparation?: number;
 }
@@ -34,6 +38,10 @@ export class StereoSynthesis {
   samples: number;
   guardBand: number;
   nearLimit: number;
+  /** How much fewer pixels there are where the eyes do not look; null: what three asks the headset for, `'off'` on a canvas. */
+  foveation: Foveation | null;
+  /** Where the eyes look, as a direction in the world; null for straight ahead. */
+  gaze: Vector3 | null;
   /** A mask of layers whose objects are drawn for both eyes, after the synthesis, such as hands. */
   bothEyes: number;
   /** How the last frame was made; null before the first one. */

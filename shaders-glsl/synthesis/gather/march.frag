@@ -67,6 +67,11 @@ vec4 searched(uint span, out Surface surface) {
     if (!done) {
         seen = march(at, end, origin, source_row(), surface);
     }
+#ifdef OPEN_HOLES
+    else if (is_outermost(at.x, at.depths, true)) {
+        discard;
+    }
+#endif
 #ifdef BLOOM
     seen = with_bloom(seen, vec2(column_at(surface.source), row_at(0.0)));
 #endif

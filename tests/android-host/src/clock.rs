@@ -58,15 +58,18 @@ fn nobody_runs() -> bool {
 /// Virtual time at the start of a run in nanoseconds: a device is never used at the moment of its boot.
 const BOOTED: u64 = 1_000_000_000_000;
 
+/// Refresh rate of the display. Virtual time advances by one period per frame.
+pub const REFRESH_HZ: f64 = 60.0;
+
 impl Clock {
-    /// Creates the clock of a device whose display has this refresh rate in Hz, and which has slept for this time.
-    pub fn new(refresh_hz: f64, slept_seconds: f64) -> Self {
+    /// Creates the clock of a device that has slept for this time.
+    pub fn new(slept_seconds: f64) -> Self {
         let realtime = std::time::SystemTime::now()
             .duration_since(std::time::UNIX_EPOCH)
             .map_or(BOOTED, |time| time.as_nanos() as u64);
         Self {
             now: AtomicU64::new(BOOTED),
-            period: (1e9 / refresh_hz).round() as u64,
+            period: (1e9 / REFRESH_HZ).round() as u64,
             slept: (slept_seconds * 1e9) as u64,
             realtime_offset: realtime.saturating_sub(BOOTED),
             waiting: Mutex::default(),

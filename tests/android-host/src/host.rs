@@ -69,7 +69,8 @@ pub struct Host {
     violations: Mutex<Vec<String>>,
     report: Mutex<Report>,
     context: Mutex<String>,
-    watch: Watch,
+    /// What must end in time.
+    doing: Mutex<Option<(String, Progress)>>,
 }
 
 /// Facts for the summary, in addition to the live state.
@@ -86,11 +87,6 @@ pub struct Report {
     pub marks: Vec<Mark>,
     /// The real standard error, since the library redirects its own.
     pub stderr: OwnedFd,
-}
-
-struct Watch {
-    timeout: Duration,
-    doing: Mutex<Option<(String, Progress)>>,
 }
 
 static HOST: OnceLock<Host> = OnceLock::new();
@@ -128,12 +124,12 @@ impl Host {
             thermal: Mutex::new(device.thermal.clone()),
             shared: Default::default(),
             properties: Mutex::new(device.properties.clone()),
-            clock: Clock::new(device.refresh_hz, device.slept_seconds),
+            clock: Clock::new(device.slept_seconds),
             frames: Frames::new(),
             log: Log::new(verbose),
             camera: Camera::new(&device),
             input: InputCounts::default(),
-            sensors: Sensors::new(&device),
+            sensors: Sensors::new(device.sensors),
             window: Window::new(device.width, device.height),
             graphics: Graphics::new(device.gles)?,
             jni: Jni::new(),
@@ -148,10 +144,7 @@ impl Host {
             violations: Mutex::new(Vec::new()),
             report: Mutex::new(report),
             context: Mutex::default(),
-            watch: Watch {
-                timeout: Duration::from_secs_f64(script.patience_seconds),
-                doing: Mutex::new(None),
-            },
+            doing: Mutex::new(None),
             device,
         };
         anyhow::ensure!(HOST.set(host).is_ok(), "a process can play one device only");
@@ -202,17 +195,12 @@ impl Host {
         lock(&self.report)
     }
 
-    /// Returns the time that a step may take without progress.
-    pub fn timeout(&self) -> Duration {
-        self.watch.timeout
-    }
-
     /// Runs a closure that must end in time. Otherwise the run fails, and the failure contains `what`.
     pub fn watched<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
         let progress = Progress::new(Instant::now(), threads::processor_time());
-        *lock(&self.watch.doing) = Some((what.to_owned(), progress));
+        *lock(&self.doing) = Some((what.to_owned(), progress));
         let result = run();
-        *lock(&self.watch.doing) = None;
+        *lock(&self.doing) = None;
         result
     }
 
@@ -329,8 +317,8 @@ fn watch() {
     loop {
         std::thread::sleep(Duration::from_millis(200));
         let host = host();
-        let late = lock(&host.watch.doing).as_mut().and_then(|(what, progress)| {
-            let reason = progress.given_up(Instant::now(), threads::processor_time(), host.timeout())?;
+        let late = lock(&host.doing).as_mut().and_then(|(what, progress)| {
+            let reason = progress.given_up(Instant::now(), threads::processor_time())?;
             Some(format!("{what} {reason}"))
         });
         if let Some(late) = late {

@@ -458,7 +458,7 @@ impl Player {
 
     fn key(&mut self, key: Key) {
         for down in [true, false] {
-            self.send(AInputEvent::Key { down, code: key.code(), time: self.host.clock.now() });
+            self.send(AInputEvent::Key { down, code: key as i32, time: self.host.clock.now() });
             if !self.finish_asked() {
                 self.frames(1);
             }

@@ -26,19 +26,11 @@ use serde::{Deserialize, Serialize};
 pub struct Script {
     /// The name in the summary.
     pub name: String,
-    /// Real seconds that a step or a callback of the activity may take without progress before the run fails. It may
-    /// use 20 times as much processor time.
-    #[serde(default = "default_timeout")]
-    pub patience_seconds: f64,
     /// The device at power-on.
     #[serde(default)]
     pub device: Device,
     /// The steps in order.
     pub steps: Vec<Step>,
-}
-
-fn default_timeout() -> f64 {
-    60.0
 }
 
 impl Script {
@@ -66,9 +58,6 @@ impl Script {
                 device.height
             );
         }
-        if !(device.refresh_hz >= 1.0 && device.refresh_hz <= 1000.0) {
-            bail!("device.refresh_hz must lie between 1 and 1000, not {}", device.refresh_hz);
-        }
         for path in device.files.keys() {
             if Path::new(path).components().any(|part| !matches!(part, std::path::Component::Normal(_))) {
                 bail!("device.files names \"{path}\": use a relative path without `..`");
@@ -86,14 +75,6 @@ pub struct Device {
     pub width: i32,
     /// Height of the window in pixels.
     pub height: i32,
-    /// Logical density in dots per inch (`AConfiguration_getDensity`).
-    pub density: i32,
-    /// Physical pixels per inch, horizontally (`DisplayMetrics.xdpi`).
-    pub xdpi: f32,
-    /// Physical pixels per inch, vertically (`DisplayMetrics.ydpi`).
-    pub ydpi: f32,
-    /// Refresh rate of the display in Hz. Virtual time advances by one period per frame.
-    pub refresh_hz: f64,
     /// Width and height of the display's mode in pixels, if the user has selected another size for the window. By
     /// default those of the window.
     pub mode: Option<[i32; 2]>,
@@ -104,14 +85,12 @@ pub struct Device {
     pub slept_seconds: f64,
     /// Features that the package manager reports, with their versions.
     pub features: BTreeMap<String, i32>,
-    /// True if the device supports sustained performance mode.
-    pub sustained_performance: bool,
     /// API level. `dlsym` does not find newer functions.
     pub sdk: i32,
     /// The newest OpenGL ES version that contexts can have.
     pub gles: GlesVersion,
-    /// Sensors that the device has.
-    pub sensors: Vec<SensorKind>,
+    /// True if the device has two gyroscopes, one of them uncalibrated, and an accelerometer.
+    pub sensors: bool,
     /// The battery, or `None` for a device without one.
     pub battery: Option<Battery>,
     /// Thermal state.
@@ -159,23 +138,13 @@ impl Default for Device {
         Self {
             width: 320,
             height: 180,
-            // A phone's screen with a width of 110 mm and few pixels.
-            density: 160,
-            xdpi: 74.0,
-            ydpi: 74.0,
-            refresh_hz: 60.0,
             mode: None,
             refreshes_ahead: 2,
             slept_seconds: 0.0,
             features: BTreeMap::new(),
-            sustained_performance: true,
             sdk: 36,
             gles: GlesVersion::Es32,
-            sensors: vec![
-                SensorKind::GyroscopeUncalibrated,
-                SensorKind::Gyroscope,
-                SensorKind::Accelerometer,
-            ],
+            sensors: true,
             battery: Some(Battery::default()),
             thermal: Thermal::default(),
             properties: BTreeMap::new(),
@@ -211,18 +180,6 @@ impl GlesVersion {
             Self::Es32 => (3, 2),
         }
     }
-}
-
-/// A sensor that can be scripted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SensorKind {
-    /// `ASENSOR_TYPE_ACCELEROMETER` (1).
-    Accelerometer,
-    /// `ASENSOR_TYPE_GYROSCOPE` (4).
-    Gyroscope,
-    /// `ASENSOR_TYPE_GYROSCOPE_UNCALIBRATED` (16).
-    GyroscopeUncalibrated,
 }
 
 /// Values of `BatteryManager` and of the sticky intent `ACTION_BATTERY_CHANGED`.
@@ -444,37 +401,22 @@ pub struct Share {
     pub view: bool,
 }
 
-/// A key of a phone or a headset.
+/// A key of a phone or a headset, with its `AKEYCODE_*` constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Key {
     /// KEYCODE_VOLUME_UP.
-    VolumeUp,
+    VolumeUp = 24,
     /// KEYCODE_VOLUME_DOWN.
-    VolumeDown,
+    VolumeDown = 25,
     /// KEYCODE_HEADSETHOOK, the button of wired remote controls.
-    Headset,
+    Headset = 79,
     /// KEYCODE_DPAD_CENTER, the trigger of some VR viewers.
-    DpadCenter,
+    DpadCenter = 23,
     /// KEYCODE_ENTER.
-    Enter,
+    Enter = 66,
     /// KEYCODE_MENU.
-    Menu,
+    Menu = 82,
     /// KEYCODE_BUTTON_A.
-    ButtonA,
-}
-
-impl Key {
-    /// Returns the `AKEYCODE_*` constant.
-    pub fn code(self) -> i32 {
-        match self {
-            Self::VolumeUp => 24,
-            Self::VolumeDown => 25,
-            Self::Headset => 79,
-            Self::DpadCenter => 23,
-            Self::Enter => 66,
-            Self::Menu => 82,
-            Self::ButtonA => 96,
-        }
-    }
+    ButtonA = 96,
 }

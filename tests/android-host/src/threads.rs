@@ -10,11 +10,13 @@ const LOOKS: u32 = 4;
 /// Time between two checks.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Minimum processor time that counts as progress, as a fraction of the patience. On a busy machine, especially under
-/// qemu, a frame may take minutes, so real time alone does not show that a process hangs.
-const MIN_PROGRESS: f64 = 0.02;
-/// Maximum processor time, as a multiple of the patience. A process that uses more is in an endless loop.
-const MAX_PROCESSOR_TIME: f64 = 20.0;
+/// Real time that a step or a callback of the activity may take without progress.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// Minimum processor time that counts as progress. On a busy machine, especially under qemu, a frame may take minutes,
+/// so real time alone does not show that a process hangs.
+const MIN_PROGRESS: Duration = Duration::from_millis(1200);
+/// Maximum processor time. A process that uses more is in an endless loop.
+const MAX_PROCESSOR_TIME: Duration = Duration::from_secs(1200);
 
 /// The progress of something that must end.
 pub struct Progress {
@@ -31,16 +33,16 @@ impl Progress {
     }
 
     /// Returns the reason for giving up, if there is one.
-    pub fn given_up(&mut self, now: Instant, spent: Duration, patience: Duration) -> Option<String> {
+    pub fn given_up(&mut self, now: Instant, spent: Duration) -> Option<String> {
         let used = spent.saturating_sub(self.begun);
-        if used > patience.mul_f64(MAX_PROCESSOR_TIME) {
+        if used > MAX_PROCESSOR_TIME {
             return Some(format!("has used {:.0} s of processor time", used.as_secs_f64()));
         }
-        if spent.saturating_sub(self.moved.1) > patience.mul_f64(MIN_PROGRESS) {
+        if spent.saturating_sub(self.moved.1) > MIN_PROGRESS {
             self.moved = (now, spent);
         }
         let still = now.saturating_duration_since(self.moved.0);
-        (still > patience).then(|| format!("has stood still for {:.0} s", still.as_secs_f64()))
+        (still > PATIENCE).then(|| format!("has stood still for {:.0} s", still.as_secs_f64()))
     }
 }
 
@@ -110,14 +112,14 @@ mod tests {
 
     #[test]
     fn a_step_hangs_when_it_stands_still_or_runs_in_circles_and_not_when_it_is_slow() {
-        let (start, patience) = (Instant::now(), Duration::from_secs(60));
+        let start = Instant::now();
         let seconds = Duration::from_secs_f64;
         // Returns when and why the run gives up on a process with this share of a processor.
         let given_up = |share: f64| {
             let mut progress = Progress::new(start, seconds(5.0));
             (0..40_000).find_map(|second| {
                 let (now, spent) = (seconds(f64::from(second)), seconds(5.0 + share * f64::from(second)));
-                progress.given_up(start + now, spent, patience).map(|reason| (second, reason))
+                progress.given_up(start + now, spent).map(|reason| (second, reason))
             })
         };
         assert_eq!(given_up(0.0), Some((61, "has stood still for 61 s".into())));

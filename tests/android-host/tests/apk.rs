@@ -13,6 +13,7 @@ use yoro_lenses::{Rotation, Screen};
 use yoro_metrics::{Channels, psnr};
 use yoro_settings::Settings;
 use yoro_settings::telemetry::{self, Line};
+use yoro_test_support::glb;
 use yoro_viewer::{Cardboard, FrameTiming, HeldHead, SceneState};
 
 use yoro_android_host::summary::Summary;
@@ -133,7 +134,7 @@ fn a_lower_resolution_is_the_same_screen() {
 
 #[test]
 fn the_phone_draws_the_same_picture_as_the_desktop() {
-    let Some(run) = show("picture", &phone(&[], "sensors = []"), r#"{ capture = "phone.png" }"#) else {
+    let Some(run) = show("picture", &phone(&[], "sensors = false"), r#"{ capture = "phone.png" }"#) else {
         return;
     };
     let (phone, desktop) = (run.picture("phone.png"), desktop(&[], None));
@@ -254,7 +255,7 @@ fn telemetry_reports_battery_and_heat() {
 #[test]
 fn runs_without_battery_and_sensors() {
     let steps = format!(r#""launch", "battery-missing", {READY}, {{ seconds = 2.5 }}, "quit""#);
-    let Some(run) = play("bare", &phone(&[], "sensors = []\nsdk = 29"), &steps) else { return };
+    let Some(run) = play("bare", &phone(&[], "sensors = false\nsdk = 29"), &steps) else { return };
     run.assert_clean();
     let lines = lines(&run);
     let last = lines.last().expect("a telemetry line");
@@ -272,7 +273,7 @@ fn runs_without_battery_and_sensors() {
 
 #[test]
 fn opengl_es_3_0_is_enough() {
-    let device = phone(&[("pipeline", "paper")], "gles = \"3.0\"\nsensors = []");
+    let device = phone(&[("pipeline", "paper")], "gles = \"3.0\"\nsensors = false");
     let Some(run) = show("es30", &device, r#"{ seconds = 1.2 }, { capture = "es30.png" }"#) else { return };
     assert!(run.summary.gl.version.contains("ES 3.0"), "{}", run.summary.gl.version);
     assert_eq!(lines(&run).last().unwrap().pipeline.as_deref(), Some("gather"));
@@ -329,7 +330,7 @@ fn lifecycle_torture_leaks_nothing() {
 
 #[test]
 fn a_lost_context_is_made_again() {
-    let Some(run) = play("loss", &phone(&[], "sensors = []"), &host::script("context-loss.toml")) else {
+    let Some(run) = play("loss", &phone(&[], "sensors = false"), &host::script("context-loss.toml")) else {
         return;
     };
     assert!(run.summary.is_clean(), "{}", run.summary);
@@ -611,7 +612,7 @@ fn a_phone_logs_why_it_is_no_headset() {
 /// All checks use the same run: under qemu, compiling shaders takes most of the time.
 #[test]
 fn the_arm64_library_does_what_the_x86_64_library_does() {
-    let device = phone(&[("methods", "yoro,conventional"), ("method", "yoro")], "sensors = []");
+    let device = phone(&[("methods", "yoro,conventional"), ("method", "yoro")], "sensors = false");
     let steps = format!(
         r#""launch", {READY}, {{ capture = "yoro.png" }}, {{ tap = {{}} }}, {{ wait-log = {{ text = "method: conventional", frames = 60 }} }},
             {{ frames = 3 }}, {{ capture = "conventional.png" }}, "quit""#
@@ -736,7 +737,7 @@ fn a_first_start_by_hand() {
     save_code(URI, Path::new(&file("code.png")));
     save_code("https://goo.gl/abc", Path::new(&file("short.png")));
     image::GrayImage::from_pixel(640, 480, image::Luma([150])).save(file("wall.png")).unwrap();
-    std::fs::write(file("my room.glb"), triangle()).unwrap();
+    std::fs::write(file("my room.glb"), glb::triangle()).unwrap();
 
     let device = by_hand(&format!("camera = {:?}", file("wall.png")));
     // When the user leaves, the activity finishes itself, so that the next one receives what is shared.
@@ -869,30 +870,4 @@ fn without_a_camera_the_start_screen_says_so() {
     ];
     let Some(run) = play("no-camera", &by_hand(""), &steps.join(", ")) else { return };
     run.assert_clean();
-}
-
-/// Returns a GLB file with one triangle.
-fn triangle() -> Vec<u8> {
-    let json = br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36}],
-        "bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,
-        "type":"VEC3","min":[-0.5,-0.5,-2],"max":[0.5,0.5,-2]}]}"#;
-    let mut json = json.to_vec();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let corners = [[-0.5, -0.5, -2.0], [0.5, -0.5, -2.0], [0.0, 0.5, -2.0_f32]];
-    let binary: Vec<u8> = corners.iter().flatten().flat_map(|n| n.to_le_bytes()).collect();
-    let word = |n: usize| (n as u32).to_le_bytes();
-    let length = 12 + 8 + json.len() + 8 + binary.len();
-    [
-        b"glTF",
-        &word(2),
-        &word(length),
-        &word(json.len()),
-        b"JSON",
-        &*json,
-        &word(binary.len()),
-        b"BIN\0",
-        &*binary,
-    ]
-    .concat()
 }

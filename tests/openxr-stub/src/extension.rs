@@ -157,6 +157,11 @@ pub fn get_visibility_mask(
         Code::ERROR_VALIDATION_FAILURE,
         format!("there is no view {view}"),
     )?;
+    forbid_if(
+        ![1, 2, 3].contains(&kind.into_raw()),
+        Code::ERROR_VALIDATION_FAILURE,
+        format!("{kind:?} is no kind of mask"),
+    )?;
     // Nothing is hidden in insets.
     let is_masked = world.script.visibility_mask && view < 2;
     let eye = &world.script.eyes[view as usize % 2];

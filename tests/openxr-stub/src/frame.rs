@@ -11,10 +11,10 @@ use sys::{Handle, Result as Code};
 use crate::instance::IMAGE_LAYOUT;
 use crate::log::{Depth, Entry, Image, Layer, View};
 use crate::script::At;
-use crate::session::{Frame, fill_depth_range, views_of};
+use crate::session::{Frame, fill_depth_range, raw_fov, views_of};
 use crate::space::{compose, inverse, pose, raw_pose};
 use crate::synthesis::{check_synthesis, submitted_synthesis, synthesize};
-use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden, in_chain};
+use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden, given, in_chain};
 
 /// The time of frame 0.
 pub const BEGINNING_NS: i64 = 1_000_000_000;
@@ -108,6 +108,7 @@ pub fn locate_views(
     world.session(session)?;
     forbid_if(info.display_time.as_nanos() <= 0, Code::ERROR_TIME_INVALID, "the time is not positive")?;
     let number = views_of(world, info.view_configuration_type)?;
+    out.check_types(number as usize, sys::View::TYPE)?;
     let base = world.space_pose(info.space)?;
     let frame = world.frame();
     let tracked = !world.script.untracked.contains(&frame);
@@ -132,9 +133,7 @@ pub fn locate_views(
             let view = compose(head, (turn, glam::Vec3::new(offset, 0.0, 0.0)));
             let inset = if i < 2 { None } else { world.script.inset(i % 2, cant.to_radians(), frame) };
             let fov = inset.map_or(eye.fov_degrees.map(f32::to_radians), |edges| edges.map(f32::atan));
-            let [left, right, up, down] = fov;
-            let fov = sys::Fovf { angle_left: left, angle_right: right, angle_up: up, angle_down: down };
-            (raw_pose((view.0 * length, view.1)), fov)
+            (raw_pose((view.0 * length, view.1)), raw_fov(fov))
         })
         .collect();
     out.fill(&views, |to, (pose, fov)| {
@@ -213,6 +212,7 @@ pub unsafe fn submitted(
                 Code::ERROR_VALIDATION_FAILURE,
                 format!("{} views instead of {expected}", projection.view_count),
             )?;
+            given(projection.views.is_null(), "the views")?;
             let upside_down = is_upside_down(world, projection)?;
             let mut views = Vec::new();
             for i in 0..projection.view_count as usize {

@@ -9,7 +9,9 @@ use sys::{Handle, Result as Code};
 
 use crate::log::Entry;
 use crate::script::{At, State};
-use crate::world::{Answer, Array, DONE, Event, Instance, World, forbid_if, forbidden, in_chain, in_output};
+use crate::world::{
+    Answer, Array, DONE, Event, Instance, World, forbid_if, forbidden, given, in_chain, in_output,
+};
 
 /// The API version that negotiation returns.
 pub const NEWEST: sys::Version = sys::Version::new(1, 1, 54);
@@ -119,9 +121,7 @@ pub fn create_instance(world: &mut World, info: &sys::InstanceCreateInfo, out: &
     }
     let application = text(&info.application_info.application_name);
     forbid_if(application.is_empty(), Code::ERROR_NAME_INVALID, "the application has no name")?;
-    if info.enabled_api_layer_count > 0 {
-        return Err(Code::ERROR_API_LAYER_NOT_PRESENT.into());
-    }
+    given(info.enabled_extension_count > 0 && info.enabled_extension_names.is_null(), "the extensions")?;
     let mut extensions = Vec::new();
     for i in 0..info.enabled_extension_count as usize {
         // SAFETY: the array has that many strings.

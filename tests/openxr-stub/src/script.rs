@@ -304,7 +304,8 @@ impl Script {
         let wide = self.eyes[eye].fov_degrees.map(|angle| angle.to_radians().tan());
         let within = |middle: f32, low: f32, high: f32| {
             let half = half.min((high - low) / 2.0);
-            let middle = middle.clamp(low + half, high - half);
+            // An inset as large as the eye has no room, and by rounding even less.
+            let middle = middle.max(low + half).min(high - half);
             [middle - half, middle + half]
         };
         let [left, right] = within(gaze.x / -gaze.z, wide[0], wide[1]);

@@ -277,11 +277,14 @@ pub fn enumerate_view_configuration_views(
     world.instance(instance)?;
     check_system(system)?;
     let number = views_of(world, configuration)? as usize;
+    views.check_types(number, sys::ViewConfigurationView::TYPE)?;
     let mut sizes: Vec<[u32; 2]> = world.script.eyes.iter().map(|eye| eye.size).collect();
     sizes.extend(world.script.insets.iter().flat_map(|insets| [insets.size; 2]));
     sizes.truncate(number);
+    let eyes = world.script.eyes.iter().cycle();
+    let sizes: Vec<_> = sizes.into_iter().zip(eyes.map(|eye| eye.fov_degrees.map(f32::to_radians))).collect();
     let vector_size = world.script.vector_size;
-    views.fill(&sizes, |view, [width, height]| {
+    views.fill(&sizes, |view, ([width, height], fov)| {
         view.recommended_image_rect_width = *width;
         view.recommended_image_rect_height = *height;
         view.max_image_rect_width = 4096;
@@ -293,6 +296,13 @@ pub fn enumerate_view_configuration_views(
             fill_depth_range(view.next);
             in_output(
                 view.next,
+                |chained: &mut sys::ViewConfigurationViewFovEPIC| {
+                    (chained.recommended_fov, chained.max_mutable_fov) = (raw_fov(*fov), raw_fov(*fov));
+                },
+                sys::ViewConfigurationViewFovEPIC::TYPE,
+            );
+            in_output(
+                view.next,
                 |sizes: &mut sys::FrameSynthesisConfigViewEXT| {
                     sizes.recommended_motion_vector_image_rect_width = vector_size[0];
                     sizes.recommended_motion_vector_image_rect_height = vector_size[1];
@@ -301,6 +311,11 @@ pub fn enumerate_view_configuration_views(
             );
         }
     })
+}
+
+/// Returns the field of view of these angles in radians: left, right, up and down.
+pub fn raw_fov([angle_left, angle_right, angle_up, angle_down]: [f32; 4]) -> sys::Fovf {
+    sys::Fovf { angle_left, angle_right, angle_up, angle_down }
 }
 
 /// Fills in the depth range in a chain. It stands for any output structure: it belongs to view configurations, but is

@@ -19,6 +19,8 @@ pub struct Swapchain {
     /// True if the density of its images can change.
     pub is_foveated: bool,
     pub textures: Vec<Texture>,
+    /// True if an image can be acquired only once.
+    pub is_static: bool,
     /// Acquired images, oldest first, with true for those that were waited for.
     pub acquired: VecDeque<(usize, bool)>,
     /// The image that was released last, which is the one shown.
@@ -118,6 +120,7 @@ pub fn create_swapchain(
         layers: info.array_size,
         usage: info.usage_flags,
         is_foveated: foveation.is_some(),
+        is_static: info.create_flags.contains(sys::SwapchainCreateFlags::STATIC_IMAGE),
         textures,
         acquired: VecDeque::new(),
         released: None,
@@ -149,25 +152,16 @@ pub fn enumerate_swapchain_images(
 ) -> Answer {
     let textures = world.swapchain(swapchain)?.textures.clone();
     let wanted = world.its_session()?.graphics.image_type();
-    let vulkan = wanted == sys::SwapchainImageVulkanKHR::TYPE;
-    let size = if vulkan {
-        size_of::<sys::SwapchainImageVulkanKHR>()
-    } else {
-        size_of::<sys::SwapchainImageOpenGLESKHR>()
-    };
-    for i in 0..images.capacity.min(textures.len() as u32) as usize {
-        // SAFETY: the array has that many structures, which have this size if they have this type.
-        let ty = unsafe { (*images.items.byte_add(i * size)).ty };
-        forbid_if(ty != wanted, Code::ERROR_VALIDATION_FAILURE, "the images' type is wrong")?;
-    }
-    // SAFETY: the type was checked.
+    // SAFETY: the types are checked before anything is written.
     unsafe {
-        if vulkan {
-            images.cast::<sys::SwapchainImageVulkanKHR>().fill(&textures, |to, from| to.image = from.raw)
+        if wanted == sys::SwapchainImageVulkanKHR::TYPE {
+            let images = images.cast::<sys::SwapchainImageVulkanKHR>();
+            images.check_types(textures.len(), wanted)?;
+            images.fill(&textures, |to, from| to.image = from.raw)
         } else {
-            images
-                .cast::<sys::SwapchainImageOpenGLESKHR>()
-                .fill(&textures, |to, from| to.image = from.raw as u32)
+            let images = images.cast::<sys::SwapchainImageOpenGLESKHR>();
+            images.check_types(textures.len(), wanted)?;
+            images.fill(&textures, |to, from| to.image = from.raw as u32)
         }
     }
 }
@@ -182,6 +176,11 @@ pub fn acquire_swapchain_image(
     world.need_context()?;
     let known = world.swapchain(swapchain)?;
     forbid_if(known.acquired.len() == IMAGES, Code::ERROR_CALL_ORDER_INVALID, "every image is acquired")?;
+    forbid_if(
+        known.is_static && (known.released.is_some() || !known.acquired.is_empty()),
+        Code::ERROR_CALL_ORDER_INVALID,
+        "the static image was acquired already",
+    )?;
     let image = known.next;
     known.next = (known.next + 1) % IMAGES;
     known.acquired.push_back((image, false));

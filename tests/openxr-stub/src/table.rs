@@ -7,7 +7,7 @@ use openxr_sys as sys;
 use sys::{Handle, pfn};
 
 use crate::extension::SetAndroidApplicationThreadKHR;
-use crate::world::{Array, DONE, enter, forbidden};
+use crate::world::{Array, DONE, enter, forbidden, given};
 use crate::{action, extension, frame, instance, session, space, swapchain};
 
 /// The C type of a parameter.
@@ -22,18 +22,21 @@ macro_rules! argument {
     (: $name:ident) => {
         $name
     };
-    (text $name:ident) => {
+    (text $name:ident) => {{
+        given($name.is_null(), stringify!($name))?;
         // SAFETY: applications pass null-terminated strings.
         unsafe { CStr::from_ptr($name) }
-    };
-    (in $name:ident) => {
+    }};
+    (in $name:ident) => {{
+        given($name.is_null(), stringify!($name))?;
         // SAFETY: applications pass complete structures.
         unsafe { &*$name }
-    };
-    (out $name:ident) => {
+    }};
+    (out $name:ident) => {{
+        given($name.is_null(), stringify!($name))?;
         // SAFETY: applications pass structures and writable places.
         unsafe { &mut *$name }
-    };
+    }};
 }
 
 /// Defines a C function for each line: the name without `xr`, the Rust function, its parameters (values, structures
@@ -246,11 +249,10 @@ pub unsafe extern "system" fn get_instance_proc_addr(
     name: *const c_char,
     out: *mut Option<pfn::VoidFunction>,
 ) -> sys::Result {
-    // SAFETY: applications pass a null-terminated string.
-    let name = unsafe { CStr::from_ptr(name) }.to_string_lossy().into_owned();
     enter("xrGetInstanceProcAddr", |world| {
-        // SAFETY: applications pass a place for a function.
-        unsafe { *out = None };
+        let (name, out) = (argument!(text name), argument!(out out));
+        let name = name.to_string_lossy().into_owned();
+        *out = None;
         let early = BEFORE_INSTANCE.contains(&name.as_str());
         if instance == sys::Instance::NULL && !early {
             return Err(sys::Result::ERROR_HANDLE_INVALID.into());
@@ -270,8 +272,7 @@ pub unsafe extern "system" fn get_instance_proc_addr(
                 format!("{name} without {extension}"),
             ));
         }
-        // SAFETY: as above.
-        unsafe { *out = Some(function) };
+        *out = Some(function);
         DONE
     })
 }

@@ -28,7 +28,7 @@ impl<T> Array<T> {
     /// Wraps the array of a call.
     ///
     /// # Safety
-    /// `count` is writable, and `items` has room for `capacity` items.
+    /// `count` is writable, and `items` has room for `capacity` items, unless they are null.
     pub unsafe fn new(capacity: u32, count: *mut u32, items: *mut T) -> Array<T> {
         Array { capacity, count, items }
     }
@@ -41,8 +41,21 @@ impl<T> Array<T> {
         Array { capacity: self.capacity, count: self.count, items: self.items.cast() }
     }
 
+    /// Refuses items, of the first `count`, that do not state the type of their structure.
+    pub fn check_types(&self, count: usize, ty: sys::StructureType) -> Result<(), Refusal> {
+        given(self.capacity > 0 && self.items.is_null(), "the array")?;
+        for i in 0..count.min(self.capacity as usize) {
+            // SAFETY: `new` requires room for `capacity` items, and these are structures, which begin with their type.
+            let stated = unsafe { (*self.items.add(i).cast::<sys::BaseInStructure>()).ty };
+            forbid_if(stated != ty, Code::ERROR_VALIDATION_FAILURE, format!("{stated:?} is the wrong type"))?;
+        }
+        Ok(())
+    }
+
     /// Writes the length and, if the capacity is not 0, the elements.
     pub fn fill<V>(self, values: &[V], write: impl Fn(&mut T, &V)) -> Answer {
+        given(self.count.is_null(), "the count")?;
+        given(self.capacity > 0 && self.items.is_null(), "the array")?;
         // SAFETY: `new` requires a place for the count, and room for `capacity` items.
         unsafe {
             *self.count = values.len() as u32;
@@ -80,6 +93,11 @@ pub fn forbidden(result: sys::Result, what: impl Into<String>) -> Refusal {
 /// Refuses a call as forbidden by the specification if `is_wrong`.
 pub fn forbid_if(is_wrong: bool, result: sys::Result, what: impl Into<String>) -> Result<(), Refusal> {
     if is_wrong { Err(forbidden(result, what)) } else { Ok(()) }
+}
+
+/// Refuses a null pointer that the specification does not allow.
+pub fn given(is_null: bool, what: &str) -> Result<(), Refusal> {
+    forbid_if(is_null, Code::ERROR_VALIDATION_FAILURE, format!("{what} is null"))
 }
 
 /// Refuses a call with an unknown handle.

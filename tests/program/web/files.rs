@@ -8,6 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
 use serde_json::{Value, json};
 use yoro_media::{DepthImage, save_depth};
+use yoro_test_support::glb;
 
 use super::{Page, close, draw, sum};
 use crate::program::succeed;
@@ -75,35 +76,6 @@ fn dynamic_portrait(size: [u32; 2]) -> Vec<u8> {
     [&color[..2], &[0xff, 0xe1], &length, text.as_bytes(), &color[2..], &depth, &sure].concat()
 }
 
-/// Makes a GLB with a single triangle.
-fn glb() -> Vec<u8> {
-    let floats: Vec<u8> =
-        [-1f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.5, 0.0].iter().flat_map(|f| f.to_le_bytes()).collect();
-    let json = json!({
-        "asset": { "version": "2.0" },
-        "buffers": [{ "byteLength": floats.len() }],
-        "bufferViews": [{ "buffer": 0, "byteLength": floats.len() }],
-        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
-            "min": [-1.0, 0.0, 0.0], "max": [1.0, 1.5, 0.0] }],
-        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
-        "nodes": [{ "mesh": 0 }],
-        "scenes": [{ "nodes": [0] }],
-    });
-    let mut json = json.to_string().into_bytes();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let mut out = b"glTF".to_vec();
-    let word = |out: &mut Vec<u8>, n: usize| out.extend((n as u32).to_le_bytes());
-    word(&mut out, 2);
-    word(&mut out, 12 + 8 + json.len() + 8 + floats.len());
-    word(&mut out, json.len());
-    out.extend(b"JSON");
-    out.extend(json);
-    word(&mut out, floats.len());
-    out.extend(b"BIN\0");
-    out.extend(floats);
-    out
-}
-
 #[test]
 fn dropped_files_are_shown_or_refused() {
     let Some(mut page) = Page::open("#display=left", None) else { return };
@@ -116,7 +88,7 @@ fn dropped_files_are_shown_or_refused() {
     page.drop_files(&[("room.obj", ROOM.into()), ("room.mtl", mtl), ("bricks.png", texture)]);
     assert_eq!((page.message(), page.evaluate("yoro.facts.triangles")), (None, json!(4)));
     page.evaluate(&draw([48, 32]));
-    page.drop_files(&[("one.glb", glb())]);
+    page.drop_files(&[("one.glb", glb::triangle())]);
     assert_eq!((page.message(), page.evaluate("yoro.facts.triangles")), (None, json!(1)));
 
     // The user moves around a single object, unless walking is selected, but walks in a built-in scene.
@@ -212,7 +184,7 @@ fn dropped_files_are_shown_or_refused() {
     let gray = |w, h| png(GrayImage::new(w, h));
     let broken: [(Files, &str); 7] = [
         (&[("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n".to_vec())], "a.obj"),
-        (&[("a.glb", glb()[..30].to_vec())], "a.glb"),
+        (&[("a.glb", glb::triangle()[..30].to_vec())], "a.glb"),
         (
             &[(
                 "a.gltf",

@@ -12,13 +12,14 @@ mod visitor;
 use std::env;
 use std::io::{BufRead as _, BufReader};
 use std::net::{Ipv4Addr, TcpListener};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use image::RgbImage;
 use serde_json::{Value, json};
+use xtask::maintain::monado::Running;
 use yoro_media::rgb_image;
 use yoro_metrics::{Channels, Quality};
 
@@ -29,7 +30,7 @@ const GL: [&str; 3] = ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blo
 
 /// A server for the page's files on this machine, which is ended when this is dropped.
 struct Server {
-    child: Child,
+    child: Option<Running>,
     address: String,
     /// The listener that replaces the server after [`Server::fall_silent`].
     silent: Option<TcpListener>,
@@ -51,25 +52,15 @@ impl Server {
         let address = lines.map_while(Result::ok).find_map(|line| {
             line.split_whitespace().find(|word| word.starts_with("http://")).map(str::to_owned)
         });
-        Some(Server { child, address: address.expect("the server says where it is"), silent: None })
+        let address = address.expect("the server says where it is");
+        Some(Server { child: Some(Running(child)), address, silent: None })
     }
 
     /// Ends the server. Its port continues to accept connections, but never answers.
     fn fall_silent(&mut self) {
-        self.stop();
+        self.child = None;
         let port = self.address.rsplit(':').next().unwrap().trim_end_matches('/');
         self.silent = Some(TcpListener::bind((Ipv4Addr::LOCALHOST, port.parse().unwrap())).unwrap());
-    }
-
-    fn stop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        self.stop();
     }
 }
 

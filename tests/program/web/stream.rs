@@ -3,7 +3,7 @@
 use std::io::{BufRead as _, BufReader, Read, Write};
 use std::net::{IpAddr, TcpListener, TcpStream, UdpSocket};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
@@ -29,7 +29,7 @@ use yoro_stream::{
     Content, EyeView, FrameHeader, FrameRenderer, FromClient, FromServer, Mode, VERSION, ViewRequest,
 };
 
-use super::{GL, Page, Server, difference, headset};
+use super::{GL, Page, Running, Server, difference, headset};
 use crate::browser::Browser;
 use crate::program::succeed;
 
@@ -54,13 +54,13 @@ fn serve(frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, Str
 
 fn serve_source(source: &str, frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
     let mut command = command(source, frame_rate, options, home);
-    let mut child: Child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let first = lines.next().expect("it says where it is").unwrap();
     std::thread::spawn(move || lines.for_each(drop));
     let link = first.strip_prefix("open ").expect("a link").to_owned();
     let address = link.split('#').next().unwrap().to_owned();
-    (Server { child, address, silent: None }, link)
+    (Server { child: Some(Running(child)), address, silent: None }, link)
 }
 
 /// Starts a server, opens its link, and waits for pictures. Returns `None` if the page or the browser is missing.
@@ -248,7 +248,7 @@ fn lose(page: &mut Page, transport: &str) {
     assert_eq!(page.message(), None);
     page.browser.expect_silence();
 
-    page.server.stop();
+    page.server.child = None;
     page.until("yoro.stream.there === false");
     assert!(page.message().unwrap().contains("lost"));
 }

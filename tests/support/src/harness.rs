@@ -443,10 +443,28 @@ impl Image<'_> {
 
     /// Reads a whole layer, in the format's own encoding, and restores its state.
     pub fn read(&self, layer: u32, state: ImageState, bytes_per_pixel: usize) -> Vec<u8> {
+        self.read_aspect(self.copied(layer), state, bytes_per_pixel)
+    }
+
+    /// Reads the stencil of a layer, with rows from the bottom.
+    pub fn read_stencil(&self, layer: u32, state: ImageState) -> Vec<u8> {
+        let stencil = vk::ImageAspectFlags::STENCIL;
+        let part = vk::ImageSubresourceLayers { aspect_mask: stencil, ..self.copied(layer) };
+        flipped(&self.read_aspect(part, state, 1), self.size[1])
+    }
+
+    fn read_aspect(
+        &self,
+        part: vk::ImageSubresourceLayers,
+        state: ImageState,
+        bytes_per_pixel: usize,
+    ) -> Vec<u8> {
+        let layer = part.base_array_layer;
         self.gpu.with_buffer(vec![0; self.pixels() * bytes_per_pixel], |buffer| {
             self.gpu.run(|commands| {
                 self.barrier(commands, layer, state, READ);
-                let (layout, copy) = (READ.layout, self.whole(layer));
+                let [whole] = self.whole(layer);
+                let (layout, copy) = (READ.layout, [whole.image_subresource(part)]);
                 // SAFETY: as in `upload`.
                 unsafe {
                     self.gpu.device.cmd_copy_image_to_buffer(commands, self.raw, layout, buffer, &copy);

@@ -4,10 +4,11 @@ use std::rc::Rc;
 
 use yoro::eyes::Warp;
 use yoro::opengl::{Destination, GlError, Outputs, Source};
+use yoro::synthesis::Holes;
 use yoro_gl::{Context, Filter, Format, RenderTarget, Texture};
 
 /// The outputs of the pipelines here.
-pub const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };
+pub const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false, holes: Holes::Filled };
 
 /// What a pipeline does.
 pub type Synthesize = Box<dyn FnMut(Source, &Warp, &Destination) -> Result<(), GlError>>;

@@ -1,5 +1,5 @@
 //! What the tests of several crates share: pictures, pipelines on OpenGL to compare with, laws that every pipeline keeps,
-//! a Vulkan device, a record of GPU commands, a browser, and the shaders that are compiled in advance.
+//! a Vulkan device, a record of GPU commands, a browser, a model, and the shaders that are compiled in advance.
 //!
 //! No crate of the product may depend on it.
 
@@ -9,6 +9,7 @@ pub mod against_opengl;
 pub mod browser;
 pub mod compiled;
 pub mod composed;
+pub mod glb;
 pub mod harness;
 pub mod in_memory;
 pub mod laws;

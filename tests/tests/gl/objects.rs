@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose};
 use yoro_assets::ShadingStyle;
 use yoro_context::Headless;
 use yoro_gl::Context;
@@ -15,12 +15,6 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
     let of = StereoOptions::of_pipeline;
     let mut small_imbuffer = of(Pipeline::Paper);
     small_imbuffer.synthesis.paper.imbuffer = ImBufferSize::Divisor(4);
-    let near_field = StereoOptions {
-        near_field: Some(2.5),
-        policy: None,
-        guard_band: GuardBand::Pixels(4),
-        ..StereoOptions::default()
-    };
     let default = StereoOptions::default();
     // Squares and floor lie on both sides of 2.5 metres.
     let split = StereoOptions { split_disparity: 0.6, ..default };
@@ -34,7 +28,6 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
         ("gather", Method::Synthesized, of(Pipeline::Gather)),
         ("paper", Method::Synthesized, of(Pipeline::Paper)),
         ("paper 1/4", Method::Synthesized, small_imbuffer),
-        ("near field", Method::Synthesized, near_field),
     ]
     .into_iter()
     .filter(|(_, method, _)| is_tested(*method, settings, gl))

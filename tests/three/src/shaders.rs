@@ -1,6 +1,7 @@
 //! The passes for three.js: a JavaScript module of texts for `RawShaderMaterial` and GLSL ES 3.0. Pages load it, so only
-//! what a pass uses is kept, without comments and spaces. glslang preprocesses the shaders.
+//! what a pass uses is kept, without comments and spaces, and with short names. glslang preprocesses the shaders.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use yoro_test_support::compiled::preprocessed;
@@ -30,6 +31,7 @@ pub fn module() -> anyhow::Result<String> {
          export const precisions = '{PRECISIONS}';\n",
         env!("CARGO_PKG_VERSION")
     );
+    let mut texts = Vec::new();
     for (name, source) in TEXTS {
         // Objects that come later are hidden by depth.
         let text = yoro_shaders::assemble(source, "300 es", &[("WRITE_DEPTH", String::new())]).unwrap().text;
@@ -37,32 +39,41 @@ pub fn module() -> anyhow::Result<String> {
         let is_code =
             |line: &&str| !line.is_empty() && !line.starts_with(['#']) && !line.starts_with("precision ");
         let lines = without_parts(text.lines().map(str::trim).filter(is_code));
-        writeln!(module, "export const {name} = /* glsl */`${{precisions}}\n{}`;", used(&lines))?;
+        texts.push((name, used(&lines)));
+    }
+    let names = short_names(texts.iter().map(|(_, text)| text.as_str()));
+    for (name, text) in &texts {
+        writeln!(module, "export const {name} = /* glsl */`${{precisions}}\n{}`;", renamed(text, &names))?;
     }
     Ok(module)
 }
 
 /// Leaves out what is for sources that are parts of their textures.
-fn without_parts<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+fn without_parts<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut depth = 0;
-    lines
-        .filter(|line| {
-            let is_inside = depth > 0 || line.starts_with("if(PART)");
-            depth += if is_inside { braces(line) } else { 0 };
-            !is_inside
+    let whole = lines.filter(|line| {
+        let is_inside = depth > 0 || line.starts_with("if(PART)");
+        depth += if is_inside { braces(line) } else { 0 };
+        !is_inside
+    });
+    whole
+        .map(|line| {
+            let choice = line.split_once("PART").filter(|(_, rest)| rest.trim_start().starts_with('?'));
+            let whole = choice.and_then(|(before, rest)| Some([before, rest.split_once(':')?.1].concat()));
+            whole.unwrap_or_else(|| line.to_owned())
         })
         .collect()
 }
 
 /// Returns the declarations that `main` needs, one a line.
-fn used(lines: &[&str]) -> String {
+fn used(lines: &[String]) -> String {
     let mut declarations: Vec<String> = Vec::new();
     let mut depth = 0;
     for line in lines {
         match declarations.last_mut() {
             // Words of two lines stay apart.
             Some(last) if depth > 0 || !last.ends_with([';', '}']) => *last = format!("{last} {line}"),
-            _ => declarations.push((*line).to_owned()),
+            _ => declarations.push(line.clone()),
         }
         depth += braces(line);
     }
@@ -78,6 +89,49 @@ fn used(lines: &[&str]) -> String {
     }
     let kept = declarations.iter().zip(needed).filter(|(_, needed)| *needed);
     kept.map(|(declaration, _)| dense(declaration)).collect::<Vec<_>>().join("\n")
+}
+
+/// Returns a short name, with a capital letter, for each longer one that the texts declare and that no pass shares with
+/// other shaders or with three.js: the most frequent one gets the shortest.
+fn short_names<'a>(texts: impl Iterator<Item = &'a str> + Clone) -> BTreeMap<String, String> {
+    let mut kept = BTreeSet::from(["main"]);
+    let mut declared: BTreeMap<&str, usize> = BTreeMap::new();
+    for line in texts.clone().flat_map(str::lines) {
+        let is_shared = ["uniform ", "in ", "out ", "layout("].iter().any(|start| line.starts_with(start));
+        if is_shared {
+            kept.extend(words(line).next_back());
+        }
+        let phrases = line.split(|c: char| !is_word(c) && c != ' ');
+        for (kind, name) in phrases.flat_map(|phrase| words(phrase).zip(words(phrase).skip(1))) {
+            let is_kind = kind.starts_with(char::is_uppercase)
+                || ["void", "struct", "bool", "int", "uint", "float"].contains(&kind)
+                || kind.trim_start_matches(['i', 'u', 'b']).strip_prefix("vec").is_some_and(|n| n.len() == 1);
+            if is_kind && name.len() > 2 && name.starts_with(char::is_alphabetic) {
+                declared.insert(name, 0);
+            }
+        }
+    }
+    for word in texts.flat_map(words) {
+        declared.entry(word).and_modify(|count| *count += 1);
+    }
+    let mut names: Vec<_> =
+        declared.into_iter().filter(|(name, count)| *count > 0 && !kept.contains(name)).collect();
+    names.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let letters = || 'A'..='Z';
+    let pairs = letters().flat_map(|first| ('a'..='z').map(move |second| format!("{first}{second}")));
+    names.into_iter().map(|(name, _)| name.to_owned()).zip(letters().map(String::from).chain(pairs)).collect()
+}
+
+/// Returns a text with other names.
+fn renamed(text: &str, names: &BTreeMap<String, String>) -> String {
+    let parts = text.split_inclusive(|c: char| !is_word(c));
+    parts
+        .map(|part| {
+            let word = part.trim_end_matches(|c: char| !is_word(c));
+            let name = names.get(word).map_or(word, String::as_str);
+            [name, &part[word.len()..]].concat()
+        })
+        .collect()
 }
 
 /// True if a declaration is that of a name: of a function, or of the last word before the value or the end.

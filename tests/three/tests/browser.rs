@@ -158,6 +158,20 @@ fn scenes_are_like_threes_own_stereo() {
         is_good(&value, [0, 1, 2].map(|i| floor[i].as_f64().unwrap()));
         assert!(number(&value, "calls") < number(&value, "callsOwn") + 3.0, "{value}");
     }
+    // Materials that ask the renderer for its viewport or its size: lines are as wide as three's own.
+    for what in ["{}", "{ deep: true }"] {
+        let value = browser.evaluate(&format!("check.lines({what})"));
+        is_good(&value, [28.0, 0.96, 10.0]);
+        assert!(number(&value, "own") > 50.0, "the rendered eye: {value}");
+    }
+    let behind = browser.evaluate("check.behind()");
+    for (name, floor) in
+        [("panorama", [29.0, 0.95, 12.0]), ("half", [29.0, 0.93, 7.0]), ("filled", [29.0, 0.95, 10.0])]
+    {
+        println!("behind everything: {name}");
+        is_good(&behind[name], floor);
+        assert!(number(&behind[name], "own") > 36.0, "the rendered eye: {}", behind[name]);
+    }
     let models = "check.controllers(check.rendererOf(512, 256, { antialias: true }))\
                   .then((scene) => check.compare({ scene, renderer: { antialias: true } }))";
     is_good(&browser.evaluate(models), [34.0, 0.98, 10.0]);
@@ -183,27 +197,78 @@ fn headsets_show_what_three_would_have_shown() {
     };
     // As Quest 3's displays are.
     let quest = json!({ "size": 256, "skew": 0.2425, "lift": -0.125 });
-    let Some(value) = session(NEWEST, quest, "{ scene: 'street', options: { samples: 4 } }") else { return };
+    let what = "{ scene: 'street', options: { samples: 4, foveation: 'off' } }";
+    let Some(value) = session(NEWEST, quest.clone(), what) else { return };
     is_good(&value, [32.0, 0.96, 10.0]);
+    assert_eq!(value["foveation"], 0, "three's own is set likewise");
+    let centre = number(&value, "centre");
     assert!(number(&value, "after") > 30.0, "the canvas after the session: {value}");
     // A projection layer, the left eye rendered, hands and transparent objects, objects of one eye.
     let projection = json!({ "size": 256, "skew": 0.15, "hasLayers": true });
-    let what =
-        "{ scene: 'glass', hands: true, options: { dominantEye: 'left' }, renderer: { antialias: true } }";
+    let what = "{ scene: 'glass', hands: true, options: { dominantEye: 'left', foveation: 'off' }, renderer: { antialias: true } }";
     let value = session(NEWEST, projection, what).unwrap();
     assert_eq!(value["layer"], "XRProjectionLayer");
     is_good(&value, [36.0, 0.98, 15.0]);
     let value = session(
         OLDEST,
         json!({ "size": 256, "skew": 0.15, "lift": 0.1 }),
-        "{ scene: 'street', hands: true, options: { samples: 4 } }",
+        "{ scene: 'street', hands: true, options: { samples: 4, foveation: 'off' } }",
     )
     .unwrap();
     is_good(&value, [31.0, 0.95, 8.0]);
     assert!(number(&value, "calls") < 0.65 * number(&value, "callsOwn"), "{value}");
+    // Without a word, as three asks the headset: its maximum.
+    let value = session(NEWEST, quest, "{ scene: 'street', options: { samples: 4 } }").unwrap();
+    println!("{value}");
+    assert_eq!(
+        (&value["way"], &value["trouble"], &value["error"]),
+        (&json!("synthesized"), &json!(null), &json!(0))
+    );
+    assert_eq!(value["foveation"], 1);
+    assert!(number(&value, "own") < 40.0, "fewer pixels: {value}");
+    assert!(number(&value, "centre") >= centre - 0.1, "where the eyes look: {value}, not {centre}");
     let value = session(NEWEST, json!({ "size": 256, "cant": 0.1 }), "{ scene: 'cubes' }").unwrap();
     assert_eq!(value["trouble"], "the displays are turned against each other");
     assert_eq!((&value["own"], &value["psnr"]), (&json!(99), &json!(99)), "three's own picture: {value}");
+}
+
+/// Levels: where the eyes look as without them, around it like two renders of the same levels, and fewer draw calls than for
+/// three's two eyes. The gaze moves without new textures or programs.
+#[test]
+fn levels_are_sharp_where_the_eyes_look() {
+    let Some(mut browser) = page(NEWEST, "") else { return };
+    let ahead = json!([[0, 0]]);
+    for (scene, foveation, gazes, periphery) in [
+        ("street", "medium", json!([[0, 0], [12, 8], [-14, -10]]), 36.0),
+        ("teapots", "high", ahead.clone(), 38.0),
+        ("glass", "medium", ahead.clone(), 38.0),
+        ("transmission", "medium", ahead, 36.0),
+    ] {
+        let values = browser.evaluate(&format!(
+            "check.levels({{ scene: '{scene}', foveation: '{foveation}', gazes: {gazes}, options: {{ dominantEye: '{}' }} }})",
+            if scene == "glass" { "left" } else { "right" }
+        ));
+        for value in values.as_array().unwrap() {
+            println!("{value}");
+            assert_eq!(
+                (&value["way"], &value["trouble"], &value["error"]),
+                (&json!("synthesized"), &json!(null), &json!(0))
+            );
+            assert!(number(value, "fovea") >= number(value, "foveaFull") - 0.1, "{value}");
+            assert!(number(value, "ownFovea") > 42.0, "{value}");
+            assert!(
+                number(value, "periphery") > periphery && number(value, "ownPeriphery") > 44.0,
+                "{value}"
+            );
+            assert!(number(value, "sources") < number(value, "callsOwn"), "{value}");
+            assert_eq!(value["memory"], values[0]["memory"], "the gaze takes nothing new");
+        }
+    }
+    // Wide lines are as wide in both levels.
+    let value = browser.evaluate("check.lines({ options: { foveation: 'medium' } })");
+    println!("{value}");
+    assert!(number(&value, "own") > 29.0, "{value}");
+    expect_nothing_but_reading(&mut browser);
 }
 
 /// What three promises nobody has a public way beside it, in the oldest and in the newest version.
@@ -236,13 +301,17 @@ fn frames_leave_nothing_behind_and_say_why_they_are_threes() {
     assert!(sentence("logarithmic").contains("logarithmic"));
     assert!(sentence("autoClear").contains("autoClear"));
     assert!(sentence("orthographic").contains("perspective"));
-    for name in ["logarithmic", "autoClear"] {
+    assert!(sentence("transmission").contains("transmission"));
+    for name in ["logarithmic", "autoClear", "transmission"] {
         assert_eq!(troubles[name], json!([sentence(name), "rendered", true]), "three's own picture");
     }
 
     let state = browser.evaluate("check.state()");
     println!("{state}");
-    assert_eq!((&state["isSame"], &state["picture"], &state["error"]), (&json!(true), &json!(99), &json!(0)));
+    assert_eq!(
+        (&state["differing"], &state["picture"], &state["error"]),
+        (&json!([]), &json!(99), &json!(0))
+    );
     assert_eq!(state["few"], state["many"], "nothing grows");
     assert_eq!(state["few"], state["back"], "also after another size");
     assert_eq!(state["begin"], state["end"], "dispose frees everything");

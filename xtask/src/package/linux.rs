@@ -98,7 +98,9 @@ pub fn library(machine: Machine, folder: &Path) -> anyhow::Result<PathBuf> {
     machine.pack(folder, "libyoro", "yoro-c", "share/doc/yoro", |content| {
         let package = root().join("app/engines/c");
         copy(&package.join("include/yoro.h"), &content.join("include/yoro.h"))?;
-        copy_folder(&package.join("examples"), &content.join("share/yoro/examples"))?;
+        for folder in ["examples", "csharp"] {
+            copy_folder(&package.join(folder), &content.join("share/yoro").join(folder))?;
+        }
         let library = content.join("lib");
         let file = format!("libyoro.so.{VERSION}");
         copy(&built.shared, &library.join(&file))?;
@@ -143,6 +145,7 @@ fn packaged(target: &str) -> Option<String> {
     match target {
         "../app/engines/c/include/yoro.h" => Some("../../../include/yoro.h".into()),
         "pictures/integration-mistakes.png" => Some("integration-mistakes.png".into()),
+        "../app/engines/c/csharp" => Some("../../yoro/csharp".into()),
         _ => example.or_else(|| target.starts_with('#').then(|| target.to_owned())),
     }
 }

@@ -43,7 +43,7 @@ const fn built(
     Item { what, variable, users, fetch, build: Some(build) }
 }
 
-static ITEMS: [Item; 14] = [
+static ITEMS: [Item; 15] = [
     built("the page", "WEB", "yoro-cli web::", page_can_be_built, || web::build().and(this_program())),
     built(
         "the example of yoro-wgpu",
@@ -69,6 +69,7 @@ static ITEMS: [Item; 14] = [
     built("the C library's package", "C_PACKAGE", "yoro-c the_package", package::fetch_users_tools, || {
         package::package(&[package::Target::Linux])?.pop().context("no package was made")
     }),
+    fetched("mono, for C#", "MONO", "yoro-c csharp_calls", setup::mono),
     built(
         "the APK (cargo xtask doctor)",
         "APK",

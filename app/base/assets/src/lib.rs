@@ -31,6 +31,6 @@ pub use error::SceneError;
 pub use export::export;
 pub use load::{load, load_animated};
 pub use model::*;
-pub use motion::{Moment, Motion};
+pub use motion::{Jumps, Moment, Motion};
 pub use path::CameraPath;
 pub use scene::Scene;

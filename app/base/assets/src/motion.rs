@@ -75,6 +75,21 @@ impl Track {
         }
     }
 
+    /// True if the value does not go on from one time to another one, but starts over, or is another one at once.
+    fn jumps(&self, loops: &[f32], [from, to]: [f64; 2]) -> bool {
+        let length = loops[self.clock];
+        if length <= 0.0 || self.times.len() < 2 {
+            return false;
+        }
+        let round = |seconds: f64| (seconds / f64::from(length)).floor();
+        let value = |seconds: f64| {
+            let after = self.times.partition_point(|&time| time <= clock(length, seconds));
+            let width = self.values.len() / self.times.len();
+            &self.values[after.saturating_sub(1) * width..][..width]
+        };
+        round(from) != round(to) || self.interpolation == Interpolation::Step && value(from) != value(to)
+    }
+
     fn vector(&self, clocks: &[f32]) -> Vec3 {
         let mut out = [0.0; 3];
         self.sample(clocks, &mut out);
@@ -93,6 +108,11 @@ impl Track {
         self.sample(clocks, &mut out);
         unit(Quat::from_array(out))
     }
+}
+
+/// Returns the time of a clock that starts over after `length` seconds; 0 for a clock that stands still.
+fn clock(length: f32, seconds: f64) -> f32 {
+    if length > 0.0 { seconds.rem_euclid(f64::from(length)) as f32 } else { 0.0 }
 }
 
 /// Returns the rotation normalized, or the identity for the zeros of a damaged file.
@@ -144,6 +164,14 @@ impl Node {
         let rotation = self.turns.as_ref().map_or(self.rotation, |track| track.rotation(clocks));
         let scale = self.grows.as_ref().map_or(self.scale, |track| track.vector(clocks));
         self.fixed * Affine3A::from_scale_rotation_translation(scale, rotation, translation)
+    }
+
+    /// True if the node jumps between two times, or had no extent at the first one, to which `clocks` are set.
+    fn jumps(&self, loops: &[f32], clocks: &[f32], times: [f64; 2]) -> bool {
+        let tracks = [&self.moves, &self.turns, &self.grows];
+        let is_flat = |track: &Track| track.vector(clocks).min_element() == 0.0;
+        tracks.into_iter().flatten().any(|track| track.jumps(loops, times))
+            || self.grows.as_ref().is_some_and(is_flat)
     }
 }
 
@@ -239,6 +267,15 @@ pub struct Moment {
     weights: Vec<f32>,
 }
 
+/// What jumps between two times. Made once, and filled by [`Motion::find_jumps`] without allocation.
+#[derive(Clone, Debug, Default)]
+pub struct Jumps {
+    /// For each of [`Motion::meshes`], whether it jumps.
+    pub meshes: Vec<bool>,
+    nodes: Vec<bool>,
+    clocks: Vec<f32>,
+}
+
 impl Motion {
     /// True if nothing moves.
     pub fn is_still(&self) -> bool {
@@ -294,14 +331,33 @@ impl Motion {
         *sun = self.sun.map(|node| nodes[node].transform_vector3(Vec3::Z).normalize_or(Vec3::Y));
     }
 
+    /// Finds what does not move on from one time to another one but jumps, so that it has no motion between them: what has
+    /// stepped to another value, appears (its scale was 0), or is carried by keys whose loop starts over.
+    pub fn find_jumps(&self, times: [f64; 2], found: &mut Jumps) {
+        let Jumps { meshes, nodes, clocks } = found;
+        clocks.clear();
+        clocks.extend(self.loops.iter().map(|&length| clock(length, times[0])));
+        nodes.clear();
+        for node in &self.nodes {
+            let with_parent = node.parent.is_some_and(|parent| nodes[parent]);
+            nodes.push(with_parent || node.jumps(&self.loops, clocks, times));
+        }
+        meshes.clear();
+        meshes.extend(self.meshes.iter().map(|mesh| {
+            let is_carried = match &mesh.carrier {
+                Carrier::Node(node) => nodes[*node],
+                Carrier::Skin { joints, .. } => joints.iter().any(|(node, _)| nodes[*node]),
+            };
+            let changes = mesh.morph.as_ref().and_then(|morph| morph.changes.as_ref());
+            is_carried || changes.is_some_and(|track| track.jumps(&self.loops, times))
+        }));
+    }
+
     /// Fills in the nodes of a moment.
     fn place_nodes(&self, seconds: f64, moment: &mut Moment) {
         let Moment { clocks, nodes, .. } = moment;
         clocks.clear();
-        clocks.extend(self.loops.iter().map(|&length| match length > 0.0 {
-            true => seconds.rem_euclid(f64::from(length)) as f32,
-            false => 0.0,
-        }));
+        clocks.extend(self.loops.iter().map(|&length| clock(length, seconds)));
         nodes.clear();
         for node in &self.nodes {
             let own = node.at(clocks);

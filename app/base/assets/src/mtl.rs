@@ -1,10 +1,6 @@
-//! MTL material libraries: makes what [`tobj::load_mtl_buf`] reads safe and complete.
-//!
-//! tobj knows one spelling of each keyword, leaves the options of map statements to its caller, and panics on a colour
-//! with fewer than three numbers. So a library is first rewritten statement by statement: keywords in tobj's spelling,
-//! numbers checked, and unintelligible statements left out with a warning.
+//! MTL material libraries, statement by statement: keywords in any spelling, numbers checked. Unintelligible statements
+//! are left out with a warning.
 
-use std::io::Cursor;
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
@@ -26,7 +22,7 @@ pub(super) struct MapStatement {
 }
 
 /// A material of a library, with the pictures it uses.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct MtlEntry {
     pub material: Material,
     pub diffuse: Option<MapStatement>,
@@ -41,29 +37,17 @@ pub(super) struct MtlEntry {
 
 /// Reads the text of a library. Never fails: unintelligible statements are left out with a warning.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Vec<MtlEntry> {
-    let mut text = String::new();
+    let mut materials = Vec::new();
     let mut faults = 0;
     for statement in statements(&String::from_utf8_lossy(bytes)) {
-        match canonical(&statement) {
-            Some(line) => {
-                text.push_str(&line);
-                text.push('\n');
-            }
-            None => {
-                faults += 1;
-                if faults <= 5 {
-                    log::warn!("{}: `{}` is ignored", path.display(), abridged(&statement));
-                }
+        if read(&statement, &mut materials).is_none() {
+            faults += 1;
+            if faults <= 5 {
+                log::warn!("{}: `{}` is ignored", path.display(), abridged(&statement));
             }
         }
     }
-    match tobj::load_mtl_buf(&mut Cursor::new(text)) {
-        Ok((materials, _)) => materials.iter().map(entry).collect(),
-        Err(e) => {
-            log::warn!("{} is not used ({e}): its materials are replaced by a default", path.display());
-            Vec::new()
-        }
-    }
+    materials.into_iter().map(Stated::entry).collect()
 }
 
 /// Returns the lines without comments and surrounding blanks. A line that ends in a backslash is joined with the next.
@@ -108,96 +92,102 @@ pub(super) fn abridged(statement: &str) -> String {
     s
 }
 
-/// Returns the statement in tobj's spelling, or `None` if it is unintelligible.
-fn canonical(statement: &str) -> Option<String> {
-    let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
-    let rest = rest.trim();
-    let numbers: Vec<f32> =
-        rest.split_whitespace().map_while(|w| w.parse().ok()).filter(|n: &f32| n.is_finite()).collect();
-    let lower = keyword.to_ascii_lowercase();
-    let name = match lower.as_str() {
-        "newmtl" => return Some(format!("newmtl {}", if rest.is_empty() { "unnamed" } else { rest })),
-        "ka" | "kd" | "ks" | "ke" => {
-            let [r, g, b] = match *numbers.as_slice() {
-                [grey] => [grey; 3],
-                [r, g, b, ..] => [r, g, b],
-                _ => return None,
-            };
-            return Some(format!("K{} {r} {g} {b}", &lower[1..]));
-        }
-        "ns" | "ni" => return numbers.first().map(|n| format!("N{} {n}", &lower[1..])),
-        "d" => {
-            let number = rest.strip_prefix("-halo").unwrap_or(rest).split_whitespace().next()?;
-            return number.parse().ok().filter(|n: &f32| n.is_finite()).map(|n| format!("d {n}"));
-        }
-        "tr" | "pr" | "pm" => return numbers.first().map(|n| format!("{lower} {n}")),
-        "illum" => return numbers.first().map(|n| format!("illum {}", n.clamp(0.0, 10.0) as u8)),
-        "map_kd" => "map_Kd",
-        "map_ks" => "map_Ks",
-        "map_ke" => "map_ke",
-        "map_bump" | "bump" => "bump",
-        "norm" | "map_norm" | "map_kn" => "norm",
-        "map_d" => "map_d",
-        // Not used here, but not worth a warning either.
-        _ if rest.is_empty() => return Some(String::new()),
-        _ => return Some(format!("other {rest}")),
-    };
-    (!rest.is_empty()).then(|| format!("{name} {rest}"))
+/// What a library states of a material.
+#[derive(Default)]
+struct Stated {
+    /// The name and the maps.
+    entry: MtlEntry,
+    diffuse: Option<Vec3>,
+    specular: Option<Vec3>,
+    emissive: Option<Vec3>,
+    shininess: Option<f32>,
+    opacity: Option<f32>,
+    transparency: Option<f32>,
+    roughness: Option<f32>,
+    metallic: Option<f32>,
+    illumination: Option<f32>,
 }
 
-fn entry(m: &tobj::Material) -> MtlEntry {
-    let extra = |key: &str| m.unknown_param.get(key);
-    let number = |key: &str| extra(key).and_then(|v| v.parse::<f32>().ok());
-    let map = |s: Option<&String>| s.and_then(|s| map_statement(s));
-    let default = Material::default();
-    let (diffuse, specular) = (map(m.diffuse_texture.as_ref()), map(m.specular_texture.as_ref()));
-    let emissive = map(extra("map_ke"));
-    let colour =
-        |c: Option<[f32; 3]>, otherwise: Vec3| c.map_or(otherwise, |c| Vec3::from(c).max(Vec3::ZERO));
-    let mut kd =
-        colour(m.diffuse, if diffuse.is_some() { Vec3::ONE } else { default.diffuse }).min(Vec3::ONE);
-    // Exporters that leave Kd black beside a map mean the map's colour.
-    if diffuse.is_some() && kd == Vec3::ZERO {
-        kd = Vec3::ONE;
+/// Reads a statement about the last material, or one that begins the next. Returns `None` if it is unintelligible.
+fn read(statement: &str, materials: &mut Vec<Stated>) -> Option<()> {
+    let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
+    let (keyword, rest) = (keyword.to_ascii_lowercase(), rest.trim());
+    if keyword == "newmtl" {
+        let mut next = Stated::default();
+        next.entry.material.name = if rest.is_empty() { "unnamed" } else { rest }.to_owned();
+        materials.push(next);
     }
-    let mut ks = colour(m.specular, default.specular).min(Vec3::ONE);
-    if m.specular.is_none() && m.illumination_model.is_some_and(|i| i < 2) {
-        ks = Vec3::ZERO;
-    }
-    if let Some(metallic) =
-        number("pm").map(|p| p.clamp(0.0, 1.0)).filter(|&p| p > 0.0 && m.specular.is_none())
-    {
-        ks = ks.lerp(kd, metallic);
-        kd *= 1.0 - metallic;
-    }
-    let mut ke = colour(m.emissive, Vec3::ZERO);
-    if emissive.is_some() && ke == Vec3::ZERO {
-        ke = Vec3::ONE;
-    }
-    let roughness = match (number("pr"), m.shininess) {
-        (Some(pr), _) => pr.clamp(0.0, 1.0),
-        (None, Some(ns)) => (2.0 / (ns.max(0.0) + 2.0)).sqrt(),
-        (None, None) => default.roughness,
+    // What is stated before the first material belongs to none.
+    let Some(m) = materials.last_mut() else { return Some(()) };
+    let numbers: Vec<f32> =
+        rest.split_whitespace().map_while(|w| w.parse().ok()).filter(|n: &f32| n.is_finite()).collect();
+    let number = numbers.first().copied();
+    let color = || match *numbers.as_slice() {
+        [grey] => Some(Vec3::splat(grey)),
+        [r, g, b, ..] => Some(Vec3::new(r, g, b)),
+        _ => None,
     };
-    let opacity = m.dissolve.or_else(|| number("tr").map(|t| 1.0 - t)).unwrap_or(1.0);
-    // Opacity 0 is taken as opaque: nobody models the invisible, and some exporters swap the meaning of d and Tr.
-    let alpha = if opacity > 0.0 && opacity < 1.0 { Alpha::Blend(opacity) } else { Alpha::Opaque };
-    MtlEntry {
-        material: Material {
-            name: m.name.clone(),
-            diffuse: kd,
-            specular: ks,
-            emissive: ke,
-            roughness,
-            alpha,
-            ..obj_default()
-        },
-        diffuse,
-        specular,
-        emissive,
-        bump: map(m.normal_texture.as_ref()),
-        normal: map(extra("norm")),
-        alpha: map(m.dissolve_texture.as_ref()),
+    match keyword.as_str() {
+        "kd" => m.diffuse = Some(color()?),
+        "ks" => m.specular = Some(color()?),
+        "ke" => m.emissive = Some(color()?),
+        "ns" => m.shininess = Some(number?),
+        "d" => {
+            let word = rest.strip_prefix("-halo").unwrap_or(rest).split_whitespace().next()?;
+            m.opacity = Some(word.parse().ok().filter(|n: &f32| n.is_finite())?);
+        }
+        "tr" => m.transparency = Some(number?),
+        "pr" => m.roughness = Some(number?),
+        "pm" => m.metallic = Some(number?),
+        "illum" => m.illumination = Some(number?),
+        "map_kd" => m.entry.diffuse = Some(map_statement(rest)?),
+        "map_ks" => m.entry.specular = Some(map_statement(rest)?),
+        "map_ke" => m.entry.emissive = Some(map_statement(rest)?),
+        "map_bump" | "bump" => m.entry.bump = Some(map_statement(rest)?),
+        "norm" | "map_norm" | "map_kn" => m.entry.normal = Some(map_statement(rest)?),
+        "map_d" => m.entry.alpha = Some(map_statement(rest)?),
+        // Not used here, but not worth a warning either.
+        _ => {}
+    }
+    Some(())
+}
+
+impl Stated {
+    fn entry(self) -> MtlEntry {
+        let Stated { entry, diffuse, specular, emissive, .. } = self;
+        let default = Material::default();
+        let color = |stated: Option<Vec3>, otherwise: Vec3| stated.map_or(otherwise, |c| c.max(Vec3::ZERO));
+        let mut kd = color(diffuse, if entry.diffuse.is_some() { Vec3::ONE } else { default.diffuse });
+        kd = kd.min(Vec3::ONE);
+        // Exporters that leave Kd black beside a map mean the map's colour.
+        if entry.diffuse.is_some() && kd == Vec3::ZERO {
+            kd = Vec3::ONE;
+        }
+        let mut ks = color(specular, default.specular).min(Vec3::ONE);
+        if specular.is_none() && self.illumination.is_some_and(|i| i < 2.0) {
+            ks = Vec3::ZERO;
+        }
+        let metallic = self.metallic.unwrap_or(0.0).clamp(0.0, 1.0);
+        if metallic > 0.0 && specular.is_none() {
+            ks = ks.lerp(kd, metallic);
+            kd *= 1.0 - metallic;
+        }
+        let mut ke = color(emissive, Vec3::ZERO);
+        if entry.emissive.is_some() && ke == Vec3::ZERO {
+            ke = Vec3::ONE;
+        }
+        let roughness = match (self.roughness, self.shininess) {
+            (Some(pr), _) => pr.clamp(0.0, 1.0),
+            (None, Some(ns)) => (2.0 / (ns.max(0.0) + 2.0)).sqrt(),
+            (None, None) => default.roughness,
+        };
+        let opacity = self.opacity.or_else(|| self.transparency.map(|t| 1.0 - t)).unwrap_or(1.0);
+        // Opacity 0 is taken as opaque: nobody models the invisible, and some exporters swap the meaning of d and Tr.
+        let alpha = if opacity > 0.0 && opacity < 1.0 { Alpha::Blend(opacity) } else { Alpha::Opaque };
+        let name = entry.material.name;
+        let own =
+            Material { name, diffuse: kd, specular: ks, emissive: ke, roughness, alpha, ..obj_default() };
+        MtlEntry { material: own, ..entry }
     }
 }
 

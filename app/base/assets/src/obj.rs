@@ -77,7 +77,6 @@ pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
     }
     let coloured = input.coloured;
     let painted: Vec<bool> = materials.iter().map(|m| coloured && m.diffuse_map.is_none()).collect();
-    let mut tangled = 0;
     let meshes = models
         .into_iter()
         .filter_map(|model| {
@@ -85,15 +84,9 @@ pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
             let part = model.name.parse::<usize>().ok().and_then(|i| input.parts.get(i))?;
             let name = input.names.names[part.name].clone();
             let placement = wanted[part.material].placement;
-            Some(raw_mesh(model.mesh, part, name, placement, painted[part.material], &mut tangled))
+            Some(raw_mesh(model.mesh, part, name, placement, painted[part.material]))
         })
         .collect();
-    if tangled > 0 {
-        log::warn!(
-            "{}: {tangled} faces cross themselves hundreds of times and are left out; export them as triangles",
-            path.display()
-        );
-    }
     if painted.contains(&true) {
         for material in materials.iter_mut().zip(&painted).filter_map(|(m, p)| p.then_some(m)) {
             material.diffuse = Vec3::ONE;
@@ -210,14 +203,13 @@ impl Wanted {
     }
 }
 
-/// Returns a mesh cut into triangles, and counts the faces that cannot be.
+/// Returns a mesh cut into triangles.
 fn raw_mesh(
     mesh: tobj::Mesh,
     part: &PartKey,
     name: String,
     placement: Option<(Vec2, Vec2)>,
     painted: bool,
-    tangled: &mut usize,
 ) -> RawMesh {
     let triple = |v: &[f32], i: usize| Vec3::new(v[i * 3], v[i * 3 + 1], v[i * 3 + 2]);
     let (scale, offset) = placement.unwrap_or((Vec2::ONE, Vec2::ZERO));
@@ -240,7 +232,6 @@ fn raw_mesh(
             points.clear();
             points.extend(corners.iter().map(|&i| vertices[i as usize].position));
             let triangles = triangulator.triangulate(&points);
-            *tangled += usize::from(arity > 2 && triangles.is_empty());
             indices.extend(triangles.iter().map(|&k| corners[k as usize]));
         }
     }

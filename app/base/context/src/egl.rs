@@ -46,7 +46,7 @@ impl EglContext {
                 };
                 match opened {
                     Ok(pair) => return Ok(pair),
-                    Err(e) => failures.push(format!("{name}: {e}")),
+                    Err(e) => failures.push(format!("{name}: {}", e.trim_end_matches('.'))),
                 }
             }
         }

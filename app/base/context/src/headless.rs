@@ -71,6 +71,15 @@ enum Holder {
     Osmesa(osmesa::OsmesaContext),
 }
 
+impl Holder {
+    fn entry_point(&self, name: &CStr) -> *const c_void {
+        match self {
+            Holder::Egl(egl) => egl.entry_point(name),
+            Holder::Osmesa(osmesa) => osmesa.entry_point(name),
+        }
+    }
+}
+
 /// A GL context without a window, current on the calling thread. It lives as long as this value or any object in it.
 ///
 /// Several contexts may exist on one thread. With Mesa's llvmpipe (seen with 22.3), contexts of two threads must not
@@ -134,10 +143,7 @@ impl Headless {
         limit: fn(&mut Capabilities),
     ) -> Result<Headless, ContextError> {
         let holder = Rc::new(holder);
-        let load = |name: &CStr| match &*holder {
-            Holder::Egl(egl) => egl.entry_point(name),
-            Holder::Osmesa(osmesa) => osmesa.entry_point(name),
-        };
+        let load = |name: &CStr| holder.entry_point(name);
         // SAFETY: both loaders return the entry points of the context that they have made current.
         let context = unsafe { Context::owned(raw, load, holder.clone(), limit) }?;
         Ok(Headless { context, backend, holder })
@@ -159,10 +165,7 @@ impl Headless {
     /// Returns a GL function by its name, or null; for tests of functions that glow does not wrap.
     #[doc(hidden)]
     pub fn entry_point(&self, name: &CStr) -> *const c_void {
-        match &*self.holder {
-            Holder::Egl(egl) => egl.entry_point(name),
-            Holder::Osmesa(osmesa) => osmesa.entry_point(name),
-        }
+        self.holder.entry_point(name)
     }
 
     /// Returns the backend that was opened, never [`Backend::Auto`].

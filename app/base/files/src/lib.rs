@@ -78,7 +78,13 @@ pub fn remedy(error: &io::Error) -> String {
         io::ErrorKind::PermissionDenied => "no permission; change its rights or choose another place".into(),
         io::ErrorKind::StorageFull => "the disk is full; free some space or choose another place".into(),
         io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only; choose another place".into(),
-        _ => error.to_string(),
+        io::ErrorKind::NotFound => "there is no such place; check the path".into(),
+        io::ErrorKind::NotADirectory => "a part of the path is a file; choose another place".into(),
+        _ => {
+            // The words of the operating system, without its number.
+            let text = error.to_string();
+            text.split(" (os error").next().unwrap_or(&text).to_owned()
+        }
     }
 }
 
@@ -193,6 +199,11 @@ fn fill_and_flush(
 /// Returns all files below `folder` with one of the `extensions` (lower case, without a dot), as sorted paths relative
 /// to it. Links to folders are not followed; hidden files and folders are left out.
 pub fn find(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, FileError> {
+    find_wanted(folder, |path| has_extension(path, extensions))
+}
+
+/// Returns all files below `folder` whose relative paths are wanted, like [`find`].
+pub fn find_wanted(folder: &Path, is_wanted: impl Fn(&Path) -> bool) -> Result<Vec<PathBuf>, FileError> {
     if !folder.exists() {
         return Err(FileError::Missing { path: folder.into() });
     }
@@ -213,7 +224,7 @@ pub fn find(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, FileErro
             let path = relative.join(&name);
             if entry.file_type().map_err(failed)?.is_dir() {
                 waiting.push(path);
-            } else if has_extension(&path, extensions) && entry.path().is_file() {
+            } else if is_wanted(&path) && entry.path().is_file() {
                 found.push(path);
             }
         }

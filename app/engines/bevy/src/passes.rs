@@ -206,7 +206,7 @@ fn synthesize_opaque(
     let color_attachment = color.get_unsampled_color_attachment();
     drop(depth.get_attachment(StoreOp::Store));
     let options =
-        Options { color_format: color.main_texture_format(), depth_format: Some(CORE_3D_DEPTH_FORMAT) };
+        Options { color_format: color.main_texture_format(), depth_format: Some(CORE_3D_DEPTH_FORMAT), ..Options::default() };
     let target = Target { color: color_attachment.view, depth: Some(depth.view()), origin: [0, 0] };
     synthesis.record(&options, source_color.main_texture_view(), source_depth, warp, &target);
 }
@@ -244,7 +244,7 @@ impl Stereo {
         target: &Target,
     ) {
         let (Plan::Finished, Some(warp)) = (self.plan, &self.views.warp) else { return };
-        let options = Options { color_format: target.color.texture().format(), depth_format: None };
+        let options = Options { color_format: target.color.texture().format(), ..Options::default() };
         synthesis.record(&options, color, depth, warp, target);
     }
 }

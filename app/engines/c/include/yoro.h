@@ -1194,6 +1194,17 @@ typedef uint32_t YoroOutputFlags;
  * Source and target are both sRGB images: sampling decodes them, and writing encodes them.
  */
 #define YORO_OUTPUT_SRGB 2
+/**
+ * Leaves open what the rendered eye does not show, and silhouettes, for the caller's scene, drawn once more. The call
+ * clears depth to the farthest and stencil to 0 in the target's rectangle, and sets stencil to 1 in each pixel that it
+ * writes: draw the opaque scene for the other eye where stencil equals 0. Only for YORO_WARP_KIND_EYES.
+ */
+#define YORO_OUTPUT_OPEN_STENCIL 4
+/**
+ * The same for materials without stencil: depth is the nearest in each pixel that is written, so that the scene passes
+ * the depth test in open ones alone. Not together with YORO_OUTPUT_DEPTH.
+ */
+#define YORO_OUTPUT_OPEN_DEPTH 8
 
 /**
  * What happens to GL state that a call changes.
@@ -1328,7 +1339,7 @@ typedef struct {
   uint32_t depth_texture;
   /**
    * The framebuffer to draw into, or 0 for the window's. Its first colour attachment is written, and with
-   * YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
+   * YORO_OUTPUT_DEPTH or an OPEN flag its depth attachment, with stencil for YORO_OUTPUT_OPEN_STENCIL. None of the textures above may be attached to it.
    */
   uint32_t framebuffer;
   /**
@@ -1659,8 +1670,10 @@ YoroResult yoro_gl_create(const YoroGlInfo *info,
                           YoroContext **context);
 
 /**
- * Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
- * buffers take 16 bytes for each 16 x 8 pixels of the source and of the target.
+ * Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add
+ * padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose buffers take 16 bytes for
+ * each 16 x 8 pixels of the source and of the target. For YORO_WARP_KIND_MOTION, give the `warp` of YoroMotionWarp: both
+ * kinds have the same buffers.
  *
  * Call it from any thread. It needs neither a loader nor a GL context.
  *
@@ -1694,6 +1707,15 @@ YoroResult yoro_gl_prepare(YoroContext *context,
  * @pre The GL context is current.
  */
 YoroResult yoro_gl_prepare_pose(YoroContext *context, const YoroPoseWarp *warp);
+
+/**
+ * Does what yoro_gl_prepare does, in a context of YORO_WARP_KIND_MOTION.
+ *
+ * @param context The context.
+ * @param warp    The warp of a frame of these sizes.
+ * @pre The GL context is current.
+ */
+YoroResult yoro_gl_prepare_motion(YoroContext *context, const YoroMotionWarp *warp);
 
 /**
  * Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it. Call it after the

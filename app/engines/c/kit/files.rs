@@ -141,7 +141,8 @@ fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
     );
     if source.ends_with("march.frag") {
         own += "//\n// Setting:\n\
-                // #define WRITE_DEPTH // The target's depth, too, to gl_FragDepth: for transparent objects.\n";
+                // #define WRITE_DEPTH // The target's depth, too, to gl_FragDepth: for transparent objects.\n\
+                // #define OPEN_HOLES // Discards holes and silhouettes, for your scene to be drawn there once more.\n";
     }
     // The lines before the precision statements also contain extensions, which synthesis does not need.
     let begins = |line: &&str| line.starts_with("precision ");

@@ -13,6 +13,7 @@ use yoro::opengl::{
     PassTime, Profiling, Source,
 };
 use yoro::synthesis::backend::WarpKind;
+use yoro::synthesis::{HoleMark, Holes};
 
 use crate::context::{
     Backend, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, YoroTimes, create, enter_as,
@@ -25,7 +26,8 @@ use crate::result::{
     YoroResult,
 };
 use crate::types::{
-    Kind, YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroOutputFlags, YoroWarpKind, other_kind, warp_kind,
+    Kind, YORO_OUTPUT_DEPTH, YORO_OUTPUT_OPEN_DEPTH, YORO_OUTPUT_OPEN_STENCIL, YORO_OUTPUT_SRGB,
+    YoroOutputFlags, YoroWarpKind, other_kind, warp_kind,
 };
 use crate::versioned::{self, versioned};
 use crate::views::{YoroWarp, read_warp};
@@ -113,8 +115,10 @@ pub unsafe extern "C" fn yoro_gl_create(
     unsafe { create(info, context, |info| info.messages, |info| Gl::new(info)) }
 }
 
-/// Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
-/// buffers take 16 bytes for each 16 x 8 pixels of the source and of the target.
+/// Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add
+/// padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose buffers take 16 bytes for
+/// each 16 x 8 pixels of the source and of the target. For YORO_WARP_KIND_MOTION, give the `warp` of YoroMotionWarp: both
+/// kinds have the same buffers.
 ///
 /// Call it from any thread. It needs neither a loader nor a GL context.
 ///
@@ -159,7 +163,7 @@ pub struct YoroGlImages {
     /// depth belongs to no surface, and causes halos.
     pub depth_texture: u32,
     /// The framebuffer to draw into, or 0 for the window's. Its first colour attachment is written, and with
-    /// YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
+    /// YORO_OUTPUT_DEPTH or an OPEN flag its depth attachment, with stencil for YORO_OUTPUT_OPEN_STENCIL. None of the textures above may be attached to it.
     pub framebuffer: u32,
     /// First column of the synthesized image in the framebuffer.
     pub x: u32,
@@ -215,6 +219,25 @@ pub unsafe extern "C" fn yoro_gl_prepare_pose(
         enter_gl(context, |gl| {
             let warp = gl.fitting(|| read_pose_warp(warp))?;
             Ok(gl.passes.pose()?.prepare(&warp)?)
+        })
+    }
+}
+
+/// Does what yoro_gl_prepare does, in a context of YORO_WARP_KIND_MOTION.
+///
+/// @param context The context.
+/// @param warp    The warp of a frame of these sizes.
+/// @pre The GL context is current.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_gl_prepare_motion(
+    context: *mut YoroContext,
+    warp: *const YoroMotionWarp,
+) -> YoroResult {
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
+    unsafe {
+        enter_gl(context, |gl| {
+            let warp = gl.fitting(|| read_motion_warp(warp))?;
+            Ok(gl.passes.motion()?.prepare(&warp)?)
         })
     }
 }
@@ -583,9 +606,19 @@ impl Backend for Gl {
 }
 
 pub(crate) fn outputs(bits: YoroOutputFlags) -> Result<Outputs, Failure> {
-    if bits & !(YORO_OUTPUT_DEPTH | YORO_OUTPUT_SRGB) != 0 {
+    let open = YORO_OUTPUT_OPEN_STENCIL | YORO_OUTPUT_OPEN_DEPTH;
+    if bits & !(YORO_OUTPUT_DEPTH | YORO_OUTPUT_SRGB | open) != 0 {
         return Err(Failure::value(format!("{bits} has bits that are no YORO_OUTPUT_ flags")));
     }
     let has = |bit| bits & bit != 0;
-    Ok(Outputs { depth: has(YORO_OUTPUT_DEPTH), source_map: false, srgb: has(YORO_OUTPUT_SRGB) })
+    let holes = match (has(YORO_OUTPUT_OPEN_STENCIL), has(YORO_OUTPUT_OPEN_DEPTH)) {
+        (false, false) => Holes::Filled,
+        (true, false) => Holes::Open(HoleMark::Stencil),
+        (false, true) if !has(YORO_OUTPUT_DEPTH) => Holes::Open(HoleMark::Depth),
+        _ => {
+            let what = "YORO_OUTPUT_OPEN_DEPTH goes neither with YORO_OUTPUT_DEPTH nor with YORO_OUTPUT_OPEN_STENCIL";
+            return Err(Failure::value(what));
+        }
+    };
+    Ok(Outputs { depth: has(YORO_OUTPUT_DEPTH), srgb: has(YORO_OUTPUT_SRGB), holes, ..Outputs::default() })
 }

@@ -100,6 +100,13 @@ pub type YoroOutputFlags = u32;
 pub const YORO_OUTPUT_DEPTH: YoroOutputFlags = 1;
 /// Source and target are both sRGB images: sampling decodes them, and writing encodes them.
 pub const YORO_OUTPUT_SRGB: YoroOutputFlags = 2;
+/// Leaves open what the rendered eye does not show, and silhouettes, for the caller's scene, drawn once more. The call
+/// clears depth to the farthest and stencil to 0 in the target's rectangle, and sets stencil to 1 in each pixel that it
+/// writes: draw the opaque scene for the other eye where stencil equals 0. Only for YORO_WARP_KIND_EYES.
+pub const YORO_OUTPUT_OPEN_STENCIL: YoroOutputFlags = 4;
+/// The same for materials without stencil: depth is the nearest in each pixel that is written, so that the scene passes
+/// the depth test in open ones alone. Not together with YORO_OUTPUT_DEPTH.
+pub const YORO_OUTPUT_OPEN_DEPTH: YoroOutputFlags = 8;
 
 /// The pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. The
 /// layout is that of XrPosef.

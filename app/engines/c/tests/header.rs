@@ -91,3 +91,68 @@ fn the_header_is_that_of_the_source() {
     let kept = std::fs::read_to_string(&header).unwrap_or_default();
     assert!(kept == made, "{} is stale: `cargo xtask test the_header --bless` renews it", header.display());
 }
+
+/// Returns what csbindgen makes of the source, with arrays whose elements it does not know as one field for each eye,
+/// and the negative constants, which it leaves out.
+fn csharp(source: &Path) -> String {
+    // The order of the C header. Vulkan's calls take handles of the engine's native side, and are made there.
+    const FILES: [&str; 12] = [
+        "result", "types", "views", "eyes", "matrices", "pose", "motion", "levels", "choice", "context", "gl",
+        "gl/compose",
+    ];
+    let work = tempfile::tempdir().unwrap();
+    let mut builder = csbindgen::Builder::default();
+    let mut errors = String::new();
+    for (i, name) in FILES.iter().enumerate() {
+        let text = std::fs::read_to_string(source.join(format!("{name}.rs"))).unwrap();
+        let mut docs = String::new();
+        for line in text.lines() {
+            match (line.strip_prefix("///"), line.strip_prefix("pub const YORO_ERROR_")) {
+                (Some(doc), _) => docs.push_str(doc),
+                (_, Some(rest)) => {
+                    let (name, code) = rest.trim_end_matches(';').split_once(": YoroResult = ").unwrap();
+                    let docs = docs.trim();
+                    errors.push_str(&format!(
+                        "        /// <summary>\n        ///  {docs}\n        /// </summary>\n        public const int YORO_ERROR_{name} = {code};\n"
+                    ));
+                }
+                _ => docs.clear(),
+            }
+        }
+        let file = work.path().join(format!("{i}.rs"));
+        std::fs::write(&file, text.replace("[[f32; 16]; 2]", "[f32; 32]")).unwrap();
+        builder = builder.input_extern_file(file);
+    }
+    let made = work.path().join("Yoro.cs");
+    let builder = builder.csharp_dll_name("yoro").csharp_class_name("Native").csharp_namespace("Yoro");
+    let builder = builder.csharp_class_accessibility("public").csharp_use_function_pointer(false);
+    builder.csharp_generate_const_filter(|_| true).generate_csharp_file(&made).unwrap();
+    let made = std::fs::read_to_string(made).unwrap();
+    let mut lines: Vec<String> = Vec::new();
+    for line in made.lines() {
+        match line.split_once("fixed byte/* ").and_then(|(_, rest)| rest.split_once(", this length is invalid")) {
+            Some((kind, rest)) => {
+                let name = rest.rsplit_once("*/ ").unwrap().1.strip_suffix("[2];").unwrap();
+                lines.push(format!("        public {kind} {name}_left, {name}_right;"));
+            }
+            None => lines.push(line.trim_end().to_owned()),
+        }
+        if line.contains("YORO_OK = 0") {
+            lines.push(errors.trim_end().to_owned());
+        }
+    }
+    lines.join("\n") + "\n"
+}
+
+#[test]
+fn the_binding_for_csharp_is_that_of_the_source() {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let made = csharp(&package.join("src"));
+    assert!(!made.contains("invalid"), "an array whose elements C# does not know: {made}");
+    let binding = package.join("csharp/Yoro.cs");
+    if std::env::var_os("YORO_BLESS").is_some() {
+        std::fs::write(&binding, &made).unwrap();
+    }
+    let kept = std::fs::read_to_string(&binding).unwrap_or_default();
+    assert!(kept == made, "{} is stale: `cargo xtask test the_binding --bless` renews it", binding.display());
+}

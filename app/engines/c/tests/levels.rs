@@ -129,6 +129,7 @@ fn wrong_compositions_return_their_codes() {
         assert_eq!(with(&|_, l| l.wide_texture = 0), YORO_ERROR_VALUE);
         assert_eq!(with(&|_, l| l.inset_x += 1000), YORO_ERROR_TOO_LARGE);
         assert_eq!(with(&|_, l| l.inset_texture = l.wide_texture), YORO_ERROR_FORMAT);
+        assert!(noted.last().unwrap().1.ends_with("inset_image_width and inset_image_height"), "{noted:?}");
         assert_eq!(with(&|_, l| l.inset_depth_texture = l.inset_texture), YORO_ERROR_FORMAT);
         assert_eq!(with(&|_, l| l.wide_texture = target), YORO_ERROR_FORMAT);
         assert_eq!(with(&|c, _| c.width = 0), YORO_ERROR_VALUE);

@@ -100,7 +100,20 @@ fn a_context_of_motion_takes_motion_warps_alone() {
     let context = create(&info).unwrap();
     // SAFETY: complete structures, a live, current context, and checks are on.
     unsafe {
+        // Once it is prepared, a frame allocates nothing: the buffers stay as they are.
+        let buffers = || {
+            let mut capabilities: YoroCapabilities = zeroed(|c: &mut YoroCapabilities| &mut c.struct_size);
+            assert_eq!(yoro_capabilities(context, &mut capabilities), YORO_OK);
+            capabilities.buffer_bytes
+        };
+        assert_eq!(yoro_gl_prepare_motion(context, &warp), YORO_OK, "{noted:?}");
+        let (prepared, mut bytes) = (buffers(), 0);
+        assert_eq!(yoro_gl_buffer_bytes(&info, &warp.warp, &mut bytes), YORO_OK);
+        assert_eq!(prepared, bytes);
+        assert_eq!(yoro_gl_prepare(context, &warp.warp), YORO_ERROR_VALUE);
+        assert_eq!(yoro_gl_prepare_motion(context, null()), YORO_ERROR_NULL);
         assert_eq!(yoro_gl_synthesize_motion(context, &warp, &images), YORO_OK, "{noted:?}");
+        assert_eq!(buffers(), prepared);
         let views = views_of(&eyes).unwrap();
         assert_eq!(yoro_gl_synthesize(context, &views.warp, &images), YORO_ERROR_VALUE);
         assert_eq!(yoro_gl_synthesize_motion(context, null(), &images), YORO_ERROR_NULL);

@@ -1,6 +1,7 @@
 //! The samples, compiled as users compile them: with C and C++ compilers, against the header and the built library.
-//! Python stands for all other languages.
+//! C# stands for all other languages.
 
+mod common;
 #[path = "programs/direct3d.rs"]
 mod direct3d;
 #[path = "../kit/files.rs"]
@@ -16,6 +17,7 @@ use yoro::eyes::{
 };
 use yoro::synthesis::backend::Places;
 use yoro::synthesis::{LevelPlaces, LevelUniforms, PoseUniforms, Uniforms};
+use yoro_c::*;
 
 /// Compilers, with their language and its standard.
 const COMPILERS: [[&str; 3]; 4] =
@@ -262,14 +264,109 @@ fn the_package_is_used_as_its_first_page_says() {
     assert!(size < 1_150_000, "{size} bytes");
 }
 
+/// What the program in C# needs of an engine.
+const ENGINE: &str = "#include \"engine_gles.h\"
+    static GLuint program;
+    void *engine_begin(void) { make_context(); program = make_program(); return (void *)eglGetProcAddress; }
+    Image engine_image(uint32_t width, uint32_t height) { return make_image(width, height); }
+    void engine_draw(const float *projection, const float *view, const Image *image) { draw(program, projection, view, image); }
+    void engine_report(const char *path, const Image *made, const Image *source, int x, int y, const Image *truth) {
+      report(path, made, source, x, y, truth);
+    }";
+
+/// Returns a structure's bytes as the program in C# prints them.
+fn hex<T>(value: &T) -> String {
+    // SAFETY: these structures have no padding.
+    let bytes = unsafe { std::slice::from_raw_parts(std::ptr::from_ref(value).cast::<u8>(), size_of::<T>()) };
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn hex_of_views(views: &YoroViews) -> String {
+    let images = [&views.source, &views.rendered, &views.synthesized].map(hex).concat();
+    hex(&views.crop_x) + &hex(&views.crop_y) + &images + &hex(&views.warp)
+}
+
+/// What C# gets is what C gets, bit for bit, and its picture is that of the sample in C.
 #[test]
-fn python_calls_the_library() {
-    if !is_here("python3") {
-        println!("SKIPPED: no Python here");
+fn csharp_calls_the_library() {
+    if !is_here("mcs") || !is_here("mono") {
+        let without = env::var_os("YORO_TEST_WITHOUT_MONO").is_some();
+        assert!(without, "run `cargo xtask test csharp`, or set YORO_TEST_WITHOUT_MONO=1");
+        println!("SKIPPED: no mono here");
         return;
     }
-    let script = package().join("tests/call.py");
-    print!("{}", run(Command::new("python3").arg(script).arg(library().join("libyoro_c.so"))));
+    let work = tempfile::tempdir().unwrap();
+    let at = |name: &str| work.path().join(name);
+    let mut compiler = Command::new("mcs");
+    compiler.args(["-unsafe", "-warnaserror", "-warn:4"]).arg(format!("-out:{}", at("calls.exe").display()));
+    run(compiler.args(["csharp/Yoro.cs", "csharp/Safe.cs", "tests/calls.cs"].map(|file| package().join(file))));
+    std::os::unix::fs::symlink(library().join("libyoro_c.so"), at("libyoro.so")).unwrap();
+    let mut mono = Command::new("mono");
+    mono.arg(at("calls.exe")).env("LD_LIBRARY_PATH", work.path());
+    let expected = gles();
+    if expected.is_some() {
+        std::fs::write(at("engine.c"), ENGINE).unwrap();
+        let mut gcc = Command::new("gcc");
+        gcc.args(["-shared", "-fPIC", "-I"]).arg(package().join("examples")).arg(at("engine.c"));
+        run(gcc.args(["-lEGL", "-lGLESv2", "-lm", "-o"]).arg(at("libengine.so")));
+        mono.arg(at("picture.png"));
+    }
+    let printed = run(&mut mono);
+
+    let mut eyes = common::good_eyes();
+    (eyes.width, eyes.height) = (512, 512);
+    for (eye, (pose, fov)) in eyes.poses.iter_mut().zip(&mut eyes.fovs).enumerate() {
+        pose.position = [[-0.0315, 0.0315][eye], 1.6, 2.0];
+        let [left, right] = [[-0.7, 0.6], [-0.6, 0.7]][eye];
+        *fov = YoroFov { angle_left: left, angle_right: right, angle_up: 0.65, angle_down: -0.65 };
+    }
+    let views = common::views_of(&eyes).unwrap();
+    let mut matrices = common::matrices_of(&views, &eyes);
+    matrices.guard_band = eyes.guard_band;
+    matrices.view.iter_mut().for_each(|view| view[8..12].iter_mut().for_each(|z| *z = -*z));
+    let mut of_matrices: YoroViews = common::zeroed(|v: &mut YoroViews| &mut v.struct_size);
+    let mut foveation: YoroFoveation = common::zeroed(|f: &mut YoroFoveation| &mut f.struct_size);
+    foveation.level = YORO_FOVEATION_MEDIUM;
+    let (mut wide, mut inset) = (of_matrices, of_matrices);
+    // SAFETY: the composition has only numbers, for which zeros are valid.
+    let mut compositions: [YoroComposition; 2] = unsafe { std::mem::zeroed() };
+    // SAFETY: whole structures of the sizes that they state, and room for two compositions.
+    unsafe {
+        assert_eq!(yoro_views_from_matrices(&matrices, &mut of_matrices), YORO_OK);
+        let of = compositions.as_mut_ptr();
+        assert_eq!(yoro_levels_from_eyes(&eyes, &foveation, &mut wide, &mut inset, of), YORO_OK);
+    }
+    let mut ways = String::new();
+    let mut chooser = std::ptr::null_mut();
+    // SAFETY: the chooser is created first and destroyed last.
+    unsafe {
+        assert_eq!(yoro_chooser_create(YORO_WAY_SYNTHESIS, &mut chooser), YORO_OK);
+        for frame in 0..200 {
+            let mut end: YoroFrameEnd = common::zeroed(|e: &mut YoroFrameEnd| &mut e.struct_size);
+            (end.rendered, end.now_ns, end.refresh_hz) = (YORO_WAY_OTHER, frame * 11_111_111, 90.0);
+            let mut choice: YoroChoice = common::zeroed(|c: &mut YoroChoice| &mut c.struct_size);
+            assert_eq!(yoro_chooser_end_frame(chooser, &end, &mut choice), YORO_OK);
+            ways += &choice.next.to_string();
+        }
+        yoro_chooser_destroy(chooser);
+    }
+    for (name, expected) in [
+        ("version", yoro_version().to_string()),
+        ("eyes", hex_of_views(&views)),
+        ("matrices", hex_of_views(&of_matrices)),
+        ("wide", hex_of_views(&wide)),
+        ("inset", hex_of_views(&inset)),
+        ("composition", hex(&compositions[0])),
+        ("composition", hex(&compositions[1])),
+        ("ways", ways),
+    ] {
+        let line = format!("{name} {expected}");
+        assert!(printed.lines().any(|printed| printed == line), "{line}\n{printed}");
+    }
+    if let Some(expected) = expected {
+        let drawn = image::open(at("picture.png")).unwrap().to_rgb8();
+        assert!(drawn == expected, "the picture is not that of the sample in C");
+    }
 }
 
 /// A program with only the shader kit draws the same picture as the library.

@@ -200,7 +200,7 @@ impl RenderTarget {
                 self.attach_texture(buffers[i], texture);
             }
             if let Some(depth) = depth {
-                self.attach_texture(glow::DEPTH_ATTACHMENT, depth);
+                self.attach_texture(depth.format().depth_attachment(), depth);
             }
             gl.draw_buffers(&buffers[..color.len().max(1)]);
             gl.check_framebuffer_status(glow::FRAMEBUFFER)

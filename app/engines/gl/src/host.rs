@@ -4,7 +4,7 @@
 
 use glow::HasContext;
 
-use crate::{Capabilities, Context, GlApi, GlError};
+use crate::{Capabilities, Context, Destination, GlApi, GlError};
 
 /// The number of texture units in use, starting with unit 0.
 const UNITS: usize = 4;
@@ -180,6 +180,21 @@ impl Host {
         }
     }
 
+    /// Sets the scissor box; that of the first viewport if there are several.
+    ///
+    /// # Safety
+    /// The context is current.
+    unsafe fn set_scissor_box(&self, gl: &glow::Context, [x, y, width, height]: [i32; 4]) {
+        // SAFETY: desktop contexts have the function for several viewports; sizes are not negative.
+        unsafe {
+            if self.viewports {
+                gl.scissor_slice(0, 1, &[[x, y, width, height]]);
+            } else {
+                gl.scissor(x, y, width, height);
+            }
+        }
+    }
+
     pub(crate) fn delete(&self, gl: &glow::Context) {
         // SAFETY: created in `new`, deleted once.
         unsafe {
@@ -196,6 +211,65 @@ pub struct Touched {
     pub draw_buffers: u32,
     /// True if the source's textures are arrays.
     pub arrays: bool,
+    /// True if written pixels are marked.
+    pub marks: bool,
+}
+
+/// What marks written pixels.
+struct Marks {
+    scissor_box: [i32; 4],
+    /// Function, reference, mask of the function, operations, write mask; of the front and the back.
+    stencil: [[i32; 7]; 2],
+}
+
+/// The queries of [`Marks::stencil`].
+const STENCIL: [[u32; 7]; 2] = [
+    [
+        glow::STENCIL_FUNC,
+        glow::STENCIL_REF,
+        glow::STENCIL_VALUE_MASK,
+        glow::STENCIL_FAIL,
+        glow::STENCIL_PASS_DEPTH_FAIL,
+        glow::STENCIL_PASS_DEPTH_PASS,
+        glow::STENCIL_WRITEMASK,
+    ],
+    [
+        glow::STENCIL_BACK_FUNC,
+        glow::STENCIL_BACK_REF,
+        glow::STENCIL_BACK_VALUE_MASK,
+        glow::STENCIL_BACK_FAIL,
+        glow::STENCIL_BACK_PASS_DEPTH_FAIL,
+        glow::STENCIL_BACK_PASS_DEPTH_PASS,
+        glow::STENCIL_BACK_WRITEMASK,
+    ],
+];
+
+impl Marks {
+    /// # Safety
+    /// The context is current.
+    unsafe fn saved(gl: &glow::Context) -> Marks {
+        let mut scissor_box = [0; 4];
+        // SAFETY: four integers are written for the box, and one for each of the others, which every context has.
+        unsafe {
+            gl.get_parameter_i32_slice(glow::SCISSOR_BOX, &mut scissor_box);
+            Marks { scissor_box, stencil: STENCIL.map(|face| face.map(|name| gl.get_parameter_i32(name))) }
+        }
+    }
+
+    /// # Safety
+    /// The context is current.
+    unsafe fn restore(&self, gl: &glow::Context, host: &Host) {
+        // SAFETY: values that the context itself returned.
+        unsafe {
+            host.set_scissor_box(gl, self.scissor_box);
+            for (face, values) in [glow::FRONT, glow::BACK].into_iter().zip(self.stencil) {
+                let [func, reference, mask, fail, depth_fail, pass, write] = values;
+                gl.stencil_func_separate(face, func as u32, reference, mask as u32);
+                gl.stencil_op_separate(face, fail as u32, depth_fail as u32, pass as u32);
+                gl.stencil_mask_separate(face, write as u32);
+            }
+        }
+    }
 }
 
 /// The state that synthesis changes, as saved by [`Context::save_state`].
@@ -221,6 +295,8 @@ pub struct HostState {
     /// Textures of [`ARRAY_UNITS`], if the pipeline touches them.
     arrays: Option<[Option<glow::Texture>; ARRAY_UNITS.len()]>,
     samplers: [Option<glow::Sampler>; UNITS],
+    /// `None` if the pipeline marks nothing.
+    marks: Option<Marks>,
 }
 
 impl Context {
@@ -277,6 +353,49 @@ impl Context {
         unsafe { if on { self.raw().enable(glow::DEPTH_TEST) } else { self.raw().disable(glow::DEPTH_TEST) } }
     }
 
+    /// Clears depth and stencil in a rectangle of the bound framebuffer, for [`Context::marking_stencil`] or
+    /// [`Context::marking_depth`]: depth to the farthest, and, if it is the mark, stencil to 0. Depth is written since
+    /// [`Context::begin_synthesis`].
+    pub fn clear_marks(&self, to: &Destination, farthest: f32, stencil: bool) {
+        let (gl, host) = (self.raw(), &self.host);
+        let ([x, y], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
+        // SAFETY: state calls with valid enums; what the framebuffer lacks is not cleared.
+        unsafe {
+            host.set_scissor_box(gl, [x, y, w, h]);
+            host.set_switch(gl, glow::SCISSOR_TEST, true);
+            if stencil {
+                gl.stencil_mask(0xff);
+                gl.clear_buffer_depth_stencil(glow::DEPTH_STENCIL, 0, farthest, 0);
+            } else {
+                gl.clear_buffer_f32_slice(glow::DEPTH, 0, &[farthest]);
+            }
+            host.set_switch(gl, glow::SCISSOR_TEST, false);
+        }
+    }
+
+    /// Runs draws that set stencil to 1 in each pixel that they write, whose stencil was cleared.
+    pub fn marking_stencil(&self, draws: impl FnOnce()) {
+        let gl = self.raw();
+        // SAFETY: state calls with valid enums.
+        unsafe {
+            gl.stencil_func(glow::ALWAYS, 1, 0xff);
+            gl.stencil_op(glow::KEEP, glow::KEEP, glow::REPLACE);
+            gl.enable(glow::STENCIL_TEST);
+            draws();
+            gl.disable(glow::STENCIL_TEST);
+        }
+    }
+
+    /// Runs draws that set depth to the nearest in each pixel that they write, with depth writes on.
+    pub fn marking_depth(&self, nearest: f32, draws: impl FnOnce()) {
+        let (gl, host) = (self.raw(), &self.host);
+        // SAFETY: the context is current.
+        unsafe { host.set_depth_range(gl, [nearest; 2]) };
+        draws();
+        // SAFETY: as above.
+        unsafe { host.set_depth_range(gl, [0.0, 1.0]) };
+    }
+
     /// Unbinds the samplers, which would override the filters of the host's textures.
     pub fn end_synthesis(&self) {
         for unit in 0..UNITS as u32 {
@@ -310,6 +429,7 @@ impl Context {
                 textures: [None; UNITS],
                 arrays: touched.arrays.then_some([None; ARRAY_UNITS.len()]),
                 samplers: [None; UNITS],
+                marks: touched.marks.then(|| Marks::saved(gl)),
             };
             if let Some(queries) = &host.queries {
                 for i in 1..state.draw_buffers {
@@ -393,6 +513,9 @@ impl Context {
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, state.draw_framebuffer);
             gl.bind_framebuffer(glow::READ_FRAMEBUFFER, state.read_framebuffer);
             host.set_viewport(gl, state.viewport);
+            if let Some(marks) = &state.marks {
+                marks.restore(gl, host);
+            }
         }
     }
 

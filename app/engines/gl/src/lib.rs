@@ -36,7 +36,7 @@ pub use observer::{Declaration, Draw, Image, Observer, Pass, Read, Shape, Write}
 pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ProgramRecipe, ShaderSource, UniformValue};
-pub use state::{Blend, DepthTest, RasterState};
+pub use state::{Blend, DepthTest, RasterState, StencilTest};
 pub use texture::{Filter, Format, Texture};
 
 /// A GL error.

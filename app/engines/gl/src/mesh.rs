@@ -131,6 +131,27 @@ impl Mesh {
         }
     }
 
+    /// Replaces those vertices from `first` on that [`Mesh::bind_with_previous`] gives as the previous ones.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn rewrite_previous<V: bytemuck::Pod>(&mut self, first: usize, vertices: &[V]) {
+        let bytes: &[u8] = bytemuck::cast_slice(vertices);
+        let offset = first * self.vertex_bytes as usize;
+        assert!(offset + bytes.len() <= self.vertex_count * self.vertex_bytes as usize, "too many vertices");
+        let gl = self.gl.raw();
+        // SAFETY: the buffer lives as long as the mesh and has these bytes.
+        unsafe {
+            gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.copies[self.previous()].1));
+            gl.buffer_sub_data_u8_slice(glow::ARRAY_BUFFER, offset as i32, bytes);
+        }
+    }
+
+    /// Returns the index of the copy before the current one.
+    fn previous(&self) -> usize {
+        (self.current + self.copies.len() - 1) % self.copies.len()
+    }
+
     /// Returns the number of indices.
     pub fn index_count(&self) -> usize {
         self.index_count
@@ -146,8 +167,7 @@ impl Mesh {
     /// three floats of each vertex before the last [`Mesh::rewrite`], or its present ones if it has not `moved`.
     pub fn bind_with_previous(&self, moved: bool) {
         self.bind();
-        let back = if moved { self.copies.len() - 1 } else { 0 };
-        let previous = self.copies[(self.current + back) % self.copies.len()].1;
+        let previous = self.copies[if moved { self.previous() } else { self.current }].1;
         let gl = self.gl.raw();
         // SAFETY: the buffer lives as long as the vertex array, and its vertices begin with three floats or are longer.
         unsafe {

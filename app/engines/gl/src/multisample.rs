@@ -96,7 +96,7 @@ impl MultisampleTarget {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
             let buffers: Vec<u32> =
                 (0..self.colors.len() as u32).map(|i| glow::COLOR_ATTACHMENT0 + i).collect();
-            let attachments = buffers.iter().copied().chain([glow::DEPTH_ATTACHMENT]);
+            let attachments = buffers.iter().copied().chain([self.depth.depth_attachment()]);
             for (attachment, image) in attachments.zip(&self.images) {
                 let (target, multisample) = (glow::FRAMEBUFFER, glow::TEXTURE_2D_MULTISAMPLE);
                 match *image {
@@ -229,7 +229,7 @@ impl MultisampleTarget {
         let colors = (0..self.colors.len() as u32).map(|i| glow::COLOR_ATTACHMENT0 + i).filter(|_| color);
         let mut discarded = [0; 4];
         let mut count = 0;
-        for attachment in colors.chain(depth.then_some(glow::DEPTH_ATTACHMENT)) {
+        for attachment in colors.chain(depth.then_some(self.depth.depth_attachment())) {
             discarded[count] = attachment;
             count += 1;
         }
@@ -331,7 +331,7 @@ impl TileTarget {
         let previous = self.textures.len().saturating_sub(1);
         self.textures.clear();
         let buffers: Vec<u32> = (0..colors.len() as u32).map(|i| glow::COLOR_ATTACHMENT0 + i).collect();
-        let attachments = buffers.iter().copied().chain([glow::DEPTH_ATTACHMENT]);
+        let attachments = buffers.iter().copied().chain([depth.format().depth_attachment()]);
         // SAFETY: the caller's textures, and the entry point exists by `tile_samples`.
         let status = unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));

@@ -30,7 +30,16 @@ pub enum Blend {
     Over,
 }
 
-/// Depth test, blending and culling of a draw.
+/// The stencil test. What is drawn does not change stencil.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StencilTest {
+    /// No test.
+    Off,
+    /// Pixels with this stencil pass.
+    Equal(u8),
+}
+
+/// Depth test, blending, culling and stencil test of a draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RasterState {
     /// Depth test.
@@ -39,17 +48,20 @@ pub struct RasterState {
     pub blend: Blend,
     /// True to cull back faces (clockwise).
     pub cull: bool,
+    /// Stencil test.
+    pub stencil: StencilTest,
 }
 
 impl RasterState {
     /// A pass over the whole screen.
-    pub const SCREEN: RasterState = RasterState { depth: DepthTest::Off, blend: Blend::Off, cull: false };
+    pub const SCREEN: RasterState =
+        RasterState { depth: DepthTest::Off, blend: Blend::Off, cull: false, stencil: StencilTest::Off };
     /// A pass over the whole screen that also writes depth.
     pub const SCREEN_DEPTH: RasterState = RasterState { depth: DepthTest::Always, ..RasterState::SCREEN };
 }
 
 impl Context {
-    /// Sets depth test, blending and culling. Turns off scissor test, stencil test and dithering, and turns on all writes.
+    /// Sets depth test, blending, culling and stencil test. Turns off scissor test and dithering, and turns on all writes.
     pub fn set_raster_state(&self, state: &RasterState) {
         let gl = self.raw();
         // SAFETY: state calls with valid enums.
@@ -74,7 +86,14 @@ impl Context {
             }
             toggle(glow::CULL_FACE, state.cull);
             gl.disable(glow::SCISSOR_TEST);
-            gl.disable(glow::STENCIL_TEST);
+            match state.stencil {
+                StencilTest::Off => gl.disable(glow::STENCIL_TEST),
+                StencilTest::Equal(value) => {
+                    gl.enable(glow::STENCIL_TEST);
+                    gl.stencil_func(glow::EQUAL, i32::from(value), 0xff);
+                    gl.stencil_op(glow::KEEP, glow::KEEP, glow::KEEP);
+                }
+            }
             gl.disable(glow::DITHER);
         }
     }

@@ -41,6 +41,8 @@ pub enum Format {
     Depth32F,
     /// 16-bit depth.
     Depth16,
+    /// Float depth and 8-bit stencil.
+    Depth32FStencil8,
 }
 
 impl Format {
@@ -63,6 +65,9 @@ impl Format {
             Format::Depth24 => (glow::DEPTH_COMPONENT24, glow::DEPTH_COMPONENT, glow::UNSIGNED_INT),
             Format::Depth32F => (glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT, glow::FLOAT),
             Format::Depth16 => (glow::DEPTH_COMPONENT16, glow::DEPTH_COMPONENT, glow::UNSIGNED_SHORT),
+            Format::Depth32FStencil8 => {
+                (glow::DEPTH32F_STENCIL8, glow::DEPTH_STENCIL, glow::FLOAT_32_UNSIGNED_INT_24_8_REV)
+            }
         }
     }
 
@@ -73,14 +78,19 @@ impl Format {
             Format::Rg8 | Format::Depth16 => 2,
             Format::Rgba8 | Format::Srgb8Alpha8 | Format::Rgb10A2 | Format::R11G11B10F | Format::Rg16F => 4,
             Format::R32F | Format::R32Ui | Format::Depth24 | Format::Depth32F => 4,
-            Format::Rgba16F | Format::Rg32F => 8,
+            Format::Rgba16F | Format::Rg32F | Format::Depth32FStencil8 => 8,
             Format::Rgba32F | Format::Rgba32Ui => 16,
         }
     }
 
     /// True if the format holds depth.
     pub fn is_depth(self) -> bool {
-        matches!(self, Format::Depth24 | Format::Depth32F | Format::Depth16)
+        matches!(self, Format::Depth24 | Format::Depth32F | Format::Depth16 | Format::Depth32FStencil8)
+    }
+
+    /// Returns the attachment of a depth format.
+    pub(crate) fn depth_attachment(self) -> u32 {
+        if self == Format::Depth32FStencil8 { glow::DEPTH_STENCIL_ATTACHMENT } else { glow::DEPTH_ATTACHMENT }
     }
 }
 

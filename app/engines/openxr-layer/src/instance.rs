@@ -10,7 +10,7 @@ use sys::ViewConfigurationType as Views;
 
 use crate::dispatch::{Dispatch, XrResult, check};
 use crate::settings::{OfferedAs, Settings};
-use crate::{lock, sizes};
+use crate::{lock, sizes, structures};
 
 /// The estimated width of the offered view, relative to an eye's, before it is known from a session. The frusta of the
 /// two eyes of common headsets differ by about this much.
@@ -23,6 +23,16 @@ const TINY: u32 = 16;
 pub fn text<const N: usize>(characters: &[c_char; N]) -> String {
     let bytes = characters.map(|byte| byte as u8);
     CStr::from_bytes_until_nul(&bytes).unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Returns the field of view that contains two.
+fn both(a: sys::Fovf, b: sys::Fovf) -> sys::Fovf {
+    sys::Fovf {
+        angle_left: a.angle_left.min(b.angle_left),
+        angle_right: a.angle_right.max(b.angle_right),
+        angle_up: a.angle_up.max(b.angle_up),
+        angle_down: a.angle_down.min(b.angle_down),
+    }
 }
 
 /// One instance.
@@ -89,9 +99,19 @@ impl Instance {
             && self.own_configurations(system).map_or(true, |own| own.contains(&Views::PRIMARY_STEREO))
     }
 
-    /// Returns the runtime's view configuration for one of the application's.
-    pub fn runtimes(&self, system: sys::SystemId, kind: Views) -> Views {
-        if kind == Views::PRIMARY_MONO && self.offers(system) { Views::PRIMARY_STEREO } else { kind }
+    /// Returns the runtime's view configuration for one of the application's, to which PRIMARY_MONO may be offered.
+    ///
+    /// # Errors
+    /// ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for those that the setting `offer = only` hides.
+    pub fn runtimes(&self, offers_mono: bool, kind: Views) -> XrResult<Views> {
+        match kind {
+            _ if !offers_mono => Ok(kind),
+            Views::PRIMARY_MONO => Ok(Views::PRIMARY_STEREO),
+            _ if self.settings.offer == OfferedAs::Only => {
+                Err(sys::Result::ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED)
+            }
+            _ => Ok(kind),
+        }
     }
 
     /// Returns the runtime's own view configurations, at most 16.
@@ -186,10 +206,32 @@ impl Instance {
             let size = known.unwrap_or([(eye[0] as f32 * ESTIMATED_WIDTH).ceil() as u32, eye[1]]);
             self.latch_size(system, role, size)
         });
+        self.join_fields_of_view(system, role, own.next);
         sys::ViewConfigurationView {
             recommended_image_rect_width: size[0].min(own.max_image_rect_width),
             recommended_image_rect_height: size[1].min(own.max_image_rect_height),
             ..own
+        }
+    }
+
+    /// Makes the fields of view that the runtime has chained to an enlarged view (XR_EPIC_view_configuration_fov) those of
+    /// both eyes together.
+    fn join_fields_of_view(&self, system: sys::SystemId, role: ViewRole, chain: *mut c_void) {
+        let ty = sys::ViewConfigurationViewFovEPIC::TYPE;
+        // SAFETY: the application's chain, and the structure of this type.
+        let fov = unsafe { structures::find_mut::<sys::ViewConfigurationViewFovEPIC>(chain, ty) };
+        let Some(fov) = fov else { return };
+        let mut each = [sys::ViewConfigurationViewFovEPIC { next: ptr::null(), ..*fov }; 4];
+        let [a, b, c, d] = each.each_mut().map(|fov| ptr::from_mut(fov).cast());
+        let four = Views::PRIMARY_STEREO_WITH_FOVEATED_INSET;
+        let asked = match role {
+            ViewRole::Eyes => self.own_views(system, Views::PRIMARY_STEREO, [a, b]).map(drop),
+            ViewRole::Wide => self.own_views(system, four, [a, b, c, d]).map(drop),
+            ViewRole::Inset => self.own_views(system, four, [c, d, a, b]).map(drop),
+        };
+        if asked.is_ok() {
+            fov.recommended_fov = both(each[0].recommended_fov, each[1].recommended_fov);
+            fov.max_mutable_fov = both(each[0].max_mutable_fov, each[1].max_mutable_fov);
         }
     }
 
@@ -223,7 +265,7 @@ impl Instance {
 
     /// Sets the size of a system's rendered view, unless it is already set: a runtime must always return the same sizes.
     /// Returns the size in force.
-    pub fn latch_size(&self, system: sys::SystemId, role: ViewRole, size: [u32; 2]) -> [u32; 2] {
+    fn latch_size(&self, system: sys::SystemId, role: ViewRole, size: [u32; 2]) -> [u32; 2] {
         let mut sizes = lock(&self.sizes);
         if let Some(known) = sizes.iter().find(|known| known.system == system && known.role == role) {
             return known.size;
@@ -232,8 +274,14 @@ impl Instance {
         size
     }
 
-    /// Remembers the size of a rendered view, with that of an eye's, for the next start.
+    /// Forgets the sizes of a system, whose views have changed.
+    pub fn forget_sizes(&self, system: sys::SystemId) {
+        lock(&self.sizes).retain(|known| known.system != system);
+    }
+
+    /// Remembers the size of a rendered view, with that of an eye's, for calls to come and for the next start.
     pub fn remember_size(&self, system: sys::SystemId, role: ViewRole, eye: [u32; 2], size: [u32; 2]) {
+        self.latch_size(system, role, size);
         if let Some(key) = self.circumstances(system, role) {
             sizes::remember(&key, eye, size);
         }

@@ -31,6 +31,9 @@ pub enum Reason {
     /// Nothing can be synthesized from the submitted view.
     #[error("{0}")]
     Geometry(GeometryError),
+    /// The swapchain is null, or was created by a function of an extension.
+    #[error("{0} is in no swapchain that xrCreateSwapchain has returned")]
+    Unknown(&'static str),
     /// The swapchain's images cannot be read.
     #[error("{0} is in a swapchain that cannot be read (multisampled, subsampled, protected, or a cube)")]
     Unreadable(&'static str),

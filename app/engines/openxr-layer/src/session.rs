@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use openxr_sys as sys;
-use sys::{Handle as _, ViewConfigurationType as Views};
+use sys::ViewConfigurationType as Views;
 use yoro::eyes::{EyesError, Frustum, Pose};
 
 use crate::binding::Binding;
@@ -15,9 +15,6 @@ use crate::dispatch::{XrResult, check};
 use crate::geometry::{IDENTITY, Offer, frustum, pose};
 use crate::instance::{Instance, ViewRole};
 use crate::{lock, sizes};
-
-/// The value of `Session::views` (the field) before the session begins.
-const NOT_BEGUN: usize = usize::MAX;
 
 /// One session.
 pub struct Session {
@@ -30,7 +27,7 @@ pub struct Session {
     system: sys::SystemId,
     /// The sizes in pixels that the runtime recommends for the dominant eye's views, by [`ViewRole`].
     eye_sizes: [[u32; 2]; 3],
-    /// The value of [`Session::views`], or [`NOT_BEGUN`].
+    /// The value of [`Session::views`].
     views: AtomicUsize,
     /// True if the size of the offered view is remembered for the next start, by [`ViewRole`].
     remembered: [AtomicBool; 3],
@@ -64,85 +61,41 @@ impl Session {
             eye_sizes[ViewRole::Wide as usize] = size(&views[dominant]);
             eye_sizes[ViewRole::Inset as usize] = size(&views[2 + dominant]);
         }
-        let session = Session {
+        Session {
             handle,
             offers_mono,
             instance,
             system,
             binding,
             eye_sizes,
-            views: AtomicUsize::new(NOT_BEGUN),
+            views: AtomicUsize::new(0),
             remembered: Default::default(),
             offers: Mutex::default(),
             begun: Mutex::default(),
-        };
-        if offers_mono {
-            session.latch_before_the_first_frame::<2>(Views::PRIMARY_STEREO, &[ViewRole::Eyes]);
         }
-        if shrinks_four {
-            session.latch_before_the_first_frame::<4>(four, &ViewRole::OF_FOUR);
-        }
-        session
     }
 
-    /// Sets the sizes of the rendered views, if the runtime locates views before the session begins.
-    fn latch_before_the_first_frame<const N: usize>(&self, kind: Views, roles: &[ViewRole]) -> Option<()> {
-        let info = sys::ReferenceSpaceCreateInfo {
-            ty: sys::ReferenceSpaceCreateInfo::TYPE,
-            next: ptr::null(),
-            reference_space_type: sys::ReferenceSpaceType::VIEW,
-            pose_in_reference_space: IDENTITY,
-        };
-        let next = &self.instance.next;
-        let mut space = sys::Space::NULL;
-        // SAFETY: a live session, and a valid description.
-        check(unsafe { (next.create_reference_space)(self.handle, &info, &mut space) }).ok()?;
-        let info = sys::ViewLocateInfo {
-            ty: sys::ViewLocateInfo::TYPE,
-            next: ptr::null(),
-            view_configuration_type: kind,
-            // Any time is valid for the VIEW space, and the present time would need an extension.
-            display_time: sys::Time::from_nanos(1),
-            space,
-        };
-        let mut state = sys::ViewState {
-            ty: sys::ViewState::TYPE,
-            next: ptr::null_mut(),
-            view_state_flags: sys::ViewStateFlags::EMPTY,
-        };
-        let located = self.locate::<N>(&info, &mut state, ptr::null_mut());
-        // SAFETY: made above, and no longer used.
-        unsafe { (next.destroy_space)(space) };
-        // Poses may be invalid before tracking begins, but fields of view are valid.
-        let located = located.ok()?;
-        for (views, role) in located.chunks_exact(2).zip(roles) {
-            if let Ok(offer) = self.offer_for(*role, &[views[0], views[1]]) {
-                self.instance.latch_size(self.system, *role, offer.size);
-            }
-        }
-        Some(())
-    }
-
-    /// Locates the runtime's views of the configuration that `info` names, which has this many. `chain` is chained to the
-    /// dominant eye's.
+    /// Locates the runtime's two views. `info` names their configuration, and `chain` is chained to the dominant eye's.
     ///
     /// # Errors
     /// The result of xrLocateViews.
-    pub fn locate<const N: usize>(
+    ///
+    /// # Safety
+    /// The arguments are those of the application's call.
+    pub unsafe fn locate(
         &self,
         info: &sys::ViewLocateInfo,
-        state: &mut sys::ViewState,
+        state: *mut sys::ViewState,
         chain: *mut c_void,
-    ) -> XrResult<[sys::View; N]> {
+    ) -> XrResult<[sys::View; 2]> {
         let fov = sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 };
-        let view = sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov };
-        let mut views = [view; N];
+        let mut views = [sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov }; 2];
         views[self.instance.settings.dominant.index()].next = chain;
         let mut count = 0;
-        // SAFETY: a live session, and room for these views.
+        // SAFETY: a live session, room for these views, and the application's own arguments.
         check(unsafe {
             let locate = self.instance.next.locate_views;
-            locate(self.handle, info, state, N as u32, &mut count, views.as_mut_ptr())
+            locate(self.handle, info, state, views.len() as u32, &mut count, views.as_mut_ptr())
         })?;
         Ok(views)
     }
@@ -197,20 +150,20 @@ impl Session {
         sizes::scaled(size, own, offered)
     }
 
-    /// Begins the session. See [`Session::views`] for `views`.
+    /// Begins the session, or ends it with 0. See [`Session::views`] for `views`.
     pub fn begin(&self, views: usize) {
         self.views.store(views, Ordering::Relaxed);
     }
 
     /// Returns the number of views in the projection layers that are rewritten: 1, or 2 or 4 if half of them are tiny. It
-    /// is 0 if everything is passed through, and before the session begins.
+    /// is 0 if everything is passed through, and while the session is not running.
     pub fn views(&self) -> usize {
-        Some(self.views.load(Ordering::Relaxed)).filter(|views| *views != NOT_BEGUN).unwrap_or(0)
+        self.views.load(Ordering::Relaxed)
     }
 
-    /// True if the layer answers calls for PRIMARY_MONO: until the session begins with another configuration.
-    pub fn answers_mono(&self) -> bool {
-        self.offers_mono && [NOT_BEGUN, 1].contains(&self.views.load(Ordering::Relaxed))
+    /// Returns the runtime's view configuration for one of the application's, by [`Instance::runtimes`].
+    pub fn runtimes(&self, kind: Views) -> XrResult<Views> {
+        self.instance.runtimes(self.offers_mono, kind)
     }
 
     /// True if, should the application begin with two or four views, those of one eye are made tiny and replaced.

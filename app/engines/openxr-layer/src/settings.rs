@@ -17,7 +17,7 @@ use crate::xdg;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum OfferedAs {
-    /// It is the only one in the list. An application that nevertheless begins in stereo still gets stereo.
+    /// It is the only one: calls for others are refused.
     Only,
     /// Before the runtime's own.
     First,

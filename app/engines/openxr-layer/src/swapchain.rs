@@ -115,6 +115,7 @@ impl Swapchain {
     /// # Safety
     /// The arguments are those of the application's call.
     pub unsafe fn wait(&self, info: *const sys::SwapchainImageWaitInfo) -> XrResult<sys::Result> {
+        self.refuse_while_held(&lock(&self.state))?;
         // SAFETY: the application's own arguments.
         let result = unsafe { (self.next().wait_swapchain_image)(self.handle, info) };
         // XR_SESSION_LOSS_PENDING is a success too.
@@ -135,6 +136,7 @@ impl Swapchain {
         reads_images: bool,
     ) -> XrResult<sys::Result> {
         let mut state = lock(&self.state);
+        self.refuse_while_held(&state)?;
         // If another image has already been acquired, this one is not the frame's. Its release must not be left to a
         // later call: the runtime may use the application's queue in this call, but not in xrWaitSwapchainImage
         // (XR_KHR_vulkan_enable).
@@ -151,6 +153,12 @@ impl Swapchain {
         state.acquired.pop_front();
         state.releases += 1;
         Ok(result)
+    }
+
+    /// Refuses to wait for an image and to release one while a release is held back: the application has acquired no other
+    /// image, but to the runtime that one is acquired still.
+    fn refuse_while_held(&self, state: &State) -> XrResult<()> {
+        state.held.map_or(Ok(()), |_| Err(sys::Result::ERROR_CALL_ORDER_INVALID))
     }
 
     /// Returns the image whose release is held back, if it can be read.
@@ -180,9 +188,13 @@ impl Swapchain {
                 next: std::ptr::null(),
             };
             // SAFETY: the swapchain is live, and the application has waited for this image.
-            check(unsafe { (self.next().release_swapchain_image)(self.handle, &info) })?;
-            // After a failure the release is passed on in a later call.
-            state.held = None;
+            let result = unsafe { (self.next().release_swapchain_image)(self.handle, &info) };
+            // After a failure the release is passed on in a later call, unless it would fail for ever.
+            let is_final = [sys::Result::ERROR_CALL_ORDER_INVALID, sys::Result::ERROR_HANDLE_INVALID];
+            if check(result).is_ok() || is_final.contains(&result) {
+                state.held = None;
+            }
+            check(result)?;
         }
         Ok(())
     }

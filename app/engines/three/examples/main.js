@@ -71,6 +71,7 @@ $('scene').value = 'teapots';
 $('scene').addEventListener('change', ({ target }) => show(target.value));
 $('mode').addEventListener('change', ({ target }) => { stereo.mode = target.value; });
 $('eye').addEventListener('change', ({ target }) => { stereo.dominantEye = target.value; });
+$('foveation').addEventListener('change', ({ target }) => { stereo.foveation = target.value || null; });
 addEventListener('resize', resize);
 renderer.xr.addEventListener('sessionend', resize);
 renderer.xr.setReferenceSpaceType('local');

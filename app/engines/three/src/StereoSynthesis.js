@@ -1,10 +1,12 @@
 import {
-  ArrayCamera, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, LinearFilter, Matrix4, PerspectiveCamera,
-  StereoCamera, UnsignedByteType, UnsignedInt248Type, UnsignedIntType, Vector2, Vector4, WebGLRenderTarget,
+  ArrayCamera, Color, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, LinearFilter, Matrix4, PerspectiveCamera,
+  StereoCamera, UnsignedByteType, UnsignedInt248Type, UnsignedIntType, UVMapping, Vector2, Vector4, WebGLRenderTarget,
 } from 'three';
+import { asEyes, asSource } from './answers.js';
 import { Chooser } from './choice.js';
 import { encode, Encoding } from './encoding.js';
 import { Readback, Timer } from './gpu.js';
+import { levelName, levelsOf } from './levels.js';
 import { drawPart } from './part.js';
 import { Passes } from './passes.js';
 import { troubleOf } from './trouble.js';
@@ -16,6 +18,7 @@ const EYE_LAYERS = 0b110;
 const NEAR_SHARES = [0.5, 0.35];
 /** Frames between two looks at what is near: with synthesis, and without, where a look costs an eye's draw calls. */
 const LOOKS = [12, 45];
+const MIXED = 'what transmission shows differs between the eyes: layers 1 and 2, or a flat background';
 
 const isOfOneEye = (camera) => camera?.isPerspectiveCamera && !camera.isArrayCamera;
 
@@ -34,15 +37,18 @@ export class StereoSynthesis {
   #timer;
   /** Reads what is near. */
   #share;
-  /** The source's camera. */
-  #camera = new PerspectiveCamera();
+  /** The sources' cameras: three keeps a target for transmission for each. */
+  #cameras = [new PerspectiveCamera(), new PerspectiveCamera()];
   /** The eyes on a canvas. */
   #pair;
   #size = new Vector2();
+  #viewports = [0, 1, 2].map(() => new Vector4());
   #between = new Matrix4();
   /** What is made for the present kind of target. */
   #made = '';
-  #source = null;
+  /** The targets of the source, or of the wide level and the inset, and that of the wide level's other eye. */
+  #sources = [];
+  #wideOther = null;
   #small = null;
   #passes = null;
   /** The passes of `synthesize`. */
@@ -52,6 +58,13 @@ export class StereoSynthesis {
   /** True if three collects frames in a buffer of linear colour (its `outputBufferType`). */
   #isBuffered = false;
   #byLists = true;
+  /** True if what is seen behind the source is drawn for each eye: the source's alpha says how much it covers. */
+  #isCovering = false;
+  #isFoveated = false;
+  /** True if something is seen through transmission. */
+  #hasGlass = false;
+  /** Frames until it is looked again whether what is behind everything can be synthesized. */
+  #pause = 0;
   #isNear = false;
   #isBusy = false;
   #frames = 0;
@@ -66,9 +79,10 @@ export class StereoSynthesis {
    * `antialias: true`, otherwise 0.
    * @param {number} [options.guardBand=1] - From this distance on, nothing is missing at the other eye's outer border.
    * @param {number} [options.nearLimit=0.4] - With `auto`, both eyes are rendered while half of the view is nearer.
+   * @param {'off'|'low'|'medium'|'high'|null} [options.foveation=null] - See `foveation`.
    * @param {number} [options.eyeSeparation=0.064] - The eyes' distance on a canvas. Headsets have their own.
    */
-  constructor(renderer, { mode = 'auto', dominantEye = 'right', samples, guardBand = 1, nearLimit = 0.4, eyeSeparation = 0.064 } = {}) {
+  constructor(renderer, { mode = 'auto', dominantEye = 'right', samples, guardBand = 1, nearLimit = 0.4, foveation = null, eyeSeparation = 0.064 } = {}) {
     if (!renderer?.isWebGLRenderer) throw new TypeError('StereoSynthesis needs a WebGLRenderer; WebGPURenderer is not supported yet');
     const { antialias, stencil } = renderer.getContext().getContextAttributes() ?? {};
     this.renderer = renderer;
@@ -78,6 +92,11 @@ export class StereoSynthesis {
     this.samples = samples ?? (antialias ? 4 : 0);
     this.guardBand = guardBand;
     this.nearLimit = nearLimit;
+    /** How much fewer pixels there are where the eyes do not look: 'off', 'low', 'medium' or 'high'. Null: in a session as
+     * `renderer.xr.getFoveation()` says, on a canvas 'off'. */
+    this.foveation = foveation;
+    /** Where the eyes look, as a direction in the world; null for straight ahead. */
+    this.gaze = null;
     /** A mask of layers: objects on them are drawn for both eyes, after the synthesis, such as hands. */
     this.bothEyes = 0;
     /** How the last frame was made: 'synthesized' or 'rendered'. */
@@ -93,9 +112,9 @@ export class StereoSynthesis {
     const { cameraL, cameraR } = this.stereoCamera;
     this.#pair = new ArrayCamera([cameraL, cameraR]);
     for (const eye of [cameraL, cameraR]) eye.viewport = new Vector4();
-    for (const camera of [this.#pair, this.#camera]) camera.matrixAutoUpdate = camera.matrixWorldAutoUpdate = false;
-    // Its matrices are not those of an angle.
-    this.#camera.updateProjectionMatrix = () => {};
+    for (const camera of [this.#pair, ...this.#cameras]) camera.matrixAutoUpdate = camera.matrixWorldAutoUpdate = false;
+    // Their matrices are not those of an angle.
+    for (const camera of this.#cameras) camera.updateProjectionMatrix = () => {};
     this.#listen('addEventListener');
     this.#begin();
   }
@@ -125,8 +144,9 @@ export class StereoSynthesis {
     scene.matrixWorldAutoUpdate = false;
     this.#isBusy = true;
     try {
-      this.#frame(scene, camera);
+      this.#restoring(() => this.#frame(scene, camera));
     } finally {
+      this.#timer.end();
       this.#isBusy = false;
       scene.matrixWorldAutoUpdate = matrixWorldAutoUpdate;
     }
@@ -172,7 +192,7 @@ export class StereoSynthesis {
    */
   view(eyes) {
     const views = this.#find(eyes);
-    return views && { camera: this.#look(eyes, views), width: views.size[0], height: views.size[1] };
+    return views && { camera: this.#look(eyes, views, 0), width: views.size[0], height: views.size[1] };
   }
 
   /**
@@ -189,12 +209,14 @@ export class StereoSynthesis {
     const views = this.#find(eyes);
     if (!views) return false;
     const passes = this.#given ??= new Passes(renderer, false);
-    this.#aside(() => passes.prepare(views, color, depth, samples > 0));
-    renderer.setRenderTarget(target);
     this.#assign(passes);
-    this.#once(() => {
-      renderer.xr.enabled = false;
-      renderer.render(passes.eyes, eyes);
+    this.#restoring(() => {
+      this.#aside(() => passes.prepare(views, color, depth, samples > 0));
+      renderer.setRenderTarget(target);
+      this.#once(() => {
+        renderer.xr.enabled = false;
+        renderer.render(passes.eyes, eyes);
+      });
     });
     return true;
   }
@@ -243,6 +265,22 @@ export class StereoSynthesis {
     this.#chooser.sceneChanged();
   };
 
+  /** Draws, and restores what the renderer draws to: three itself leaves its viewport on the right eye's half. */
+  #restoring(draw) {
+    const { renderer } = this;
+    const [viewport, current, now] = this.#viewports;
+    renderer.getViewport(viewport);
+    renderer.getCurrentViewport(current);
+    const target = [renderer.getRenderTarget(), renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel()];
+    try {
+      draw();
+    } finally {
+      renderer.setRenderTarget(...target);
+      // That of a render target may have been set by `setViewport`, too.
+      if (!renderer.getCurrentViewport(now).equals(current)) renderer.setViewport(viewport);
+    }
+  }
+
   /** Draws, and restores what the user has set. */
   #once(draw) {
     const { renderer } = this;
@@ -274,8 +312,8 @@ export class StereoSynthesis {
     const isPresenting = this.#isPresenting;
     const isAuto = this.mode === 'auto';
     const chooser = this.#chooser;
-    this.way = 'rendered';
     if (!isPresenting && !isOfOneEye(camera)) {
+      this.way = 'rendered';
       this.trouble = 'the camera has no perspective, or several';
       renderer.render(scene, camera);
       return;
@@ -284,19 +322,19 @@ export class StereoSynthesis {
     const eyes = this.eyes(camera);
     const shown = isPresenting ? camera : eyes;
     this.trouble = null;
-    const views = this.mode === 'rendered' ? null : this.#find(eyes);
-    if (isAuto && views) this.#watch(`${views.size} ${isPresenting}`);
+    const views = this.mode === 'rendered' ? null : this.#findLevels(eyes);
+    if (isAuto && views) this.#watch(`${views.map(({ size }) => size)} ${isPresenting}`);
     if (views && !(isAuto && (this.#isNear || chooser.way === 'rendered'))) {
       this.way = 'synthesized';
       this.#synthesize(scene, eyes, shown, views);
     } else {
-      if (isAuto && views && this.#isNear) this.#lookNear(scene, eyes, views);
-      renderer.render(scene, shown);
+      if (isAuto && views && this.#isNear) this.#lookNear(scene, eyes, views[0]);
+      this.#render(scene, shown);
     }
     if (!isAuto) return;
     this.#timer.end();
     const refresh = isPresenting ? renderer.xr.getSession()?.frameRate ?? 0 : 0;
-    chooser.endFrame(performance.now(), refresh, views && !this.#isNear ? this.way : null, this.#timer.take());
+    chooser.endFrame(performance.now(), refresh, views && !this.#isNear && this.trouble === null ? this.way : null, this.#timer.take());
   }
 
   /** Follows the picture's size, and what is near. */
@@ -312,6 +350,12 @@ export class StereoSynthesis {
     this.#isNear = sum / (255 * bytes.length) >= NEAR_SHARES[Number(this.#isNear)];
   }
 
+  /** Draws three's own two eyes. */
+  #render(scene, shown) {
+    this.way = 'rendered';
+    asEyes(this.renderer, () => this.renderer.render(scene, shown));
+  }
+
   #synthesize(scene, eyes, shown, views) {
     const { renderer } = this;
     const { info } = renderer;
@@ -324,20 +368,29 @@ export class StereoSynthesis {
       let isDone = false;
       while (!isDone) {
         this.#allocate(target);
-        const source = this.#source, passes = this.#passes;
-        const left = this.#draw(source, views.size, scene, this.#look(eyes, views));
+        const passes = this.#passes, sources = this.#sources;
+        const [left] = views.map((each, i) => this.#draw(sources[i], each.size, scene, eyes, each, i));
+        if (this.trouble !== null) return this.#render(scene, shown);
         this.#aside(() => {
-          passes.prepare(views, source.texture, source.depthTexture, source.samples > 0);
-          if (this.mode === 'auto' && this.#frames % LOOKS[0] === 0) this.#count(views);
+          const levels = this.#isFoveated ? [passes.wide, passes] : [passes];
+          levels.forEach((each, i) => {
+            const { texture, depthTexture, samples } = sources[i];
+            each.prepare(views[i], texture, depthTexture, samples > 0);
+          });
+          if (this.mode === 'auto' && this.#frames % LOOKS[0] === 0) this.#count(views[0]);
+          if (!this.#isFoveated) return;
+          this.#wideOther.setSize(...views[0].uniforms.target_size);
+          passes.wide.drawOther(this.#wideOther);
+          passes.compose(views[1], this.#rendered, this.#wideOther);
         });
         this.#assign(passes);
-        this.#show(scene, shown, left);
+        passes.isCovering = this.#isCovering;
+        asEyes(renderer, () => this.#show(scene, shown, left));
         // Whether three collects frames is known once a picture is drawn, which is then drawn again.
         isDone = this.#isBuffered || this.#drawnTo === target;
         this.#isBuffered ||= !isDone;
       }
     } finally {
-      renderer.setRenderTarget(target);
       info.autoReset = autoReset;
     }
   }
@@ -377,7 +430,23 @@ export class StereoSynthesis {
     return pair;
   }
 
-  /** Returns what to render, or null; then `trouble` says why. */
+  /** Returns what to render for each level, or null; then `trouble` says why. */
+  #findLevels(eyes) {
+    const { renderer } = this;
+    const views = this.#find(eyes);
+    if (!views) return null;
+    if (this.#pause > 0) {
+      this.#pause--;
+      this.trouble = MIXED;
+      return null;
+    }
+    const name = levelName(this.foveation, this.#isPresenting ? renderer.xr : null);
+    const levels = levelsOf(eyes.cameras, this.#rendered, name, this.gaze, this.guardBand, this.#isReversed, renderer.capabilities.maxTextureSize, this.#between);
+    this.#isFoveated = levels !== null;
+    return levels ?? [views];
+  }
+
+  /** Returns what to render with all pixels, or null; then `trouble` says why. */
   #find(eyes) {
     const { renderer } = this;
     const { cameras } = eyes;
@@ -399,17 +468,19 @@ export class StereoSynthesis {
     const isLinear = this.#isLinear(target);
     // Where three resolves samples in the tile, depth is lost.
     const isLost = renderer.extensions.has('WEBGL_multisampled_render_to_texture') && !renderer.properties?.get;
-    const made = `${isLinear} ${isLost ? 0 : this.samples}`;
+    const samples = isLost ? 0 : this.samples, isFoveated = this.#isFoveated;
+    const made = `${isLinear} ${samples} ${isFoveated}`;
     if (this.#made !== made) {
       this.#release();
       this.#made = made;
-      this.#source = this.#target(isLinear, isLost ? 0 : this.samples);
-      this.#passes = new Passes(renderer, isLinear);
+      this.#sources = (isFoveated ? [0, 1] : [0]).map(() => this.#target(isLinear, samples));
+      if (isFoveated) this.#wideOther = this.#target(isLinear, 0);
+      this.#passes = new Passes(renderer, isLinear, isFoveated ? new Passes(renderer, false) : null);
       this.#passes.own.onBeforeRender = () => {
         this.#drawnTo = renderer.getRenderTarget();
       };
     }
-    if (!isLinear) this.#source.texture.colorSpace = renderer.outputColorSpace;
+    if (!isLinear) for (const { texture } of this.#sources) texture.colorSpace = renderer.outputColorSpace;
   }
 
   #target(isLinear, samples) {
@@ -424,18 +495,19 @@ export class StereoSynthesis {
   }
 
   #release() {
-    for (const target of [this.#source, this.#small]) {
+    for (const target of [...this.#sources, this.#wideOther, this.#small]) {
       target?.depthTexture.dispose();
       target?.dispose();
     }
     this.#passes?.dispose();
-    this.#source = this.#small = this.#passes = null;
+    this.#sources = [];
+    this.#wideOther = this.#small = this.#passes = null;
     this.#made = '';
   }
 
-  /** Returns the camera of the source. */
-  #look(eyes, { frustum }) {
-    const eye = eyes.cameras[this.#rendered], camera = this.#camera;
+  /** Returns the camera of a source. */
+  #look(eyes, { frustum }, index) {
+    const eye = eyes.cameras[this.#rendered], camera = this.#cameras[index];
     camera.near = eye.near;
     camera.far = eye.far;
     camera.matrixWorld.copy(eye.matrixWorld).decompose(camera.position, camera.quaternion, camera.scale);
@@ -449,22 +521,61 @@ export class StereoSynthesis {
     return camera;
   }
 
+  /** True for what one eye alone sees. */
+  #isOfOneEyeAlone({ layers }) {
+    return (layers.mask & this.#cameras[0].layers.mask & ~EYE_LAYERS) === 0;
+  }
+
   /** True for what is drawn for each eye, after the synthesis. */
-  #isLater(object) {
-    const { mask } = object.layers;
-    return (mask & this.#camera.layers.mask & ~EYE_LAYERS) === 0 || (mask & this.bothEyes) !== 0;
+  #isLater(object, kind) {
+    if (kind === 'transparent' || this.#isOfOneEyeAlone(object) || (object.layers.mask & this.bothEyes) !== 0) return true;
+    // Widths and sizes in pixels are those of the eye's, unless they are seen through something.
+    return this.#isFoveated && !this.#hasGlass && (object.isLine || object.isPoints) === true;
   }
 
   /** Draws what moves with the synthesis into a target. Returns how many objects are left. */
-  #draw(target, size, scene, camera) {
+  #draw(target, size, scene, eyes, views, index = 0) {
     const { renderer } = this;
     const before = renderer.getRenderTarget();
+    const camera = this.#look(eyes, views, index);
     target.setSize(...size);
     if (target.samples > 0 && renderer.properties?.get) renderer.properties.get(target).__useRenderToTexture = false;
-    const isWanted = (object, isTransparent) => !isTransparent && !this.#isLater(object);
-    const part = () => this.#part(scene, isWanted, camera);
+    const { background, overrideMaterial } = scene;
+    // A picture that fills the view fills an eye's, not the source's.
+    const isPlane = background?.isTexture && !background.isCubeTexture && background.mapping === UVMapping;
+    // The levels agree.
+    let isCovering = index > 0 ? this.#isCovering : isPlane;
+    if (index === 0) this.#hasGlass = false;
+    const isWanted = (object, kind, item) => {
+      if (kind === 'opaque' && item && index === 0 && this.#isOfOneEyeAlone(object)) isCovering = true;
+      if (kind === 'transmissive' && index === 0) this.#hasGlass = true;
+      return !this.#isLater(object, kind) && !(kind === 'opaque' && !this.#hasGlass && views.hides?.(object));
+    };
+    const color = renderer.getClearColor(new Color()), alpha = renderer.getClearAlpha();
+    const clear = () => {
+      this.#isCovering = Boolean(isCovering && !overrideMaterial);
+      if (!this.#isCovering) return;
+      if (this.#hasGlass) {
+        this.trouble = MIXED;
+        this.#pause = LOOKS[1];
+      }
+      scene.background = null;
+      renderer.setClearColor(0, 0);
+    };
+    const { viewport } = eyes.cameras[this.#rendered];
+    const eye = asEyes(renderer, () => renderer.getViewport(new Vector4()), viewport);
+    const part = () => asSource(renderer, views, eye, () => {
+      try {
+        return this.#part(scene, isWanted, camera, clear);
+      } finally {
+        scene.background = background;
+        renderer.setClearColor(color, alpha);
+      }
+    });
     const left = this.#once(() => {
       renderer.xr.enabled = false;
+      // Shadows are those of the first source.
+      if (index > 0) renderer.shadowMap.autoUpdate = false;
       renderer.setRenderTarget(target);
       // In headsets, those versions forget the background, too, and what is drawn for both eyes fits to it.
       return before === null && target.isXRRenderTarget ? this.#encoding.draw(scene, part) : part();
@@ -474,10 +585,10 @@ export class StereoSynthesis {
   }
 
   /** Draws a part of the scene. Its list is not a public promise of three's; without it, layers hide objects. */
-  #part(scene, isWanted, camera) {
+  #part(scene, isWanted, camera, before) {
     const { renderer } = this;
     const list = this.#byLists ? renderer.renderLists?.get?.(scene, 0) : null;
-    const left = drawPart(list?.finish ? list : null, scene, isWanted, () => renderer.render(scene, camera));
+    const left = drawPart(list?.finish ? list : null, scene, isWanted, () => renderer.render(scene, camera), before);
     if (left < 0) this.#byLists = false;
     return left;
   }
@@ -485,7 +596,7 @@ export class StereoSynthesis {
   /** Counts how much is near, to be known some frames later. */
   #count(views, size, depth) {
     if (this.#share.isWaiting) return;
-    this.#passes.drawNear(views, (1 / this.nearLimit - views.constant) / views.slope, size, depth);
+    (this.#passes.wide ?? this.#passes).drawNear(views, (1 / this.nearLimit - views.constant) / views.slope, size, depth);
     this.#share.begin(16);
   }
 
@@ -493,7 +604,7 @@ export class StereoSynthesis {
   #lookNear(scene, eyes, views) {
     if (this.#frames % LOOKS[1] !== 0 || !this.#passes) return;
     const small = this.#small ??= this.#target(false, 0), size = [64, 64];
-    this.#draw(small, size, scene, this.#look(eyes, views));
+    this.#draw(small, size, scene, eyes, views);
     this.#aside(() => this.#count(views, size, small.depthTexture));
   }
 
@@ -508,10 +619,17 @@ export class StereoSynthesis {
     const { renderer } = this;
     const { eyes, own, other } = this.#passes;
     const { background, overrideMaterial } = scene;
-    if (left === 0 || overrideMaterial) renderer.render(eyes, shown);
-    if (left === 0) return;
-    const isWanted = (object, isTransparent) => object === own || object === other || isTransparent || this.#isLater(object);
-    scene.background = null;
+    const isCovering = this.#isCovering;
+    const isAll = left === 0 && !isCovering;
+    if (isAll || overrideMaterial) renderer.render(eyes, shown);
+    if (isAll) return;
+    const isWanted = (object, kind, item) => {
+      const isPicture = object === own || object === other;
+      // What one eye alone sees may be behind the pictures.
+      if (isCovering && item && kind === 'opaque' && !isPicture && this.#isOfOneEyeAlone(object)) item.groupOrder = item.renderOrder = -Infinity;
+      return isPicture || this.#isLater(object, kind);
+    };
+    if (!isCovering) scene.background = null;
     if (!overrideMaterial) scene.children.unshift(eyes);
     try {
       this.#once(() => {

@@ -6,25 +6,28 @@
  *
  * @param {Object|null} list - three's render list of the scene; null to hide objects by their layers instead.
  * @param {import('three').Object3D} scene
- * @param {(object: import('three').Object3D, isTransparent: boolean) => boolean} isWanted
+ * @param {(object: import('three').Object3D, kind: string, item?: Object) => boolean} isWanted - Called with 'transmissive',
+ * 'opaque' or 'transparent', in this order, and the list's item.
  * @param {() => void} draw
+ * @param {() => void} [before] - Called once it is known what is drawn.
  */
-export function drawPart(list, scene, isWanted, draw) {
-  return list ? drawListed(list, isWanted, draw) : drawVisible(scene, isWanted, draw);
+export function drawPart(list, scene, isWanted, draw, before = () => {}) {
+  return list ? drawListed(list, isWanted, draw, before) : drawVisible(scene, isWanted, draw, before);
 }
 
-function drawListed(list, isWanted, draw) {
+function drawListed(list, isWanted, draw, before) {
   let left = -1;
   const { finish } = list;
   list.finish = () => {
     left = 0;
-    for (const name of ['opaque', 'transmissive', 'transparent']) {
+    for (const name of ['transmissive', 'opaque', 'transparent']) {
       const items = list[name];
       let kept = 0;
-      for (const item of items) if (isWanted(item.object, name === 'transparent')) items[kept++] = item;
+      for (const item of items) if (isWanted(item.object, name, item)) items[kept++] = item;
       left += items.length - kept;
       items.length = kept;
     }
+    before();
     finish();
   };
   try {
@@ -35,17 +38,19 @@ function drawListed(list, isWanted, draw) {
   return left;
 }
 
-function drawVisible(scene, isWanted, draw) {
+function drawVisible(scene, isWanted, draw, before) {
   const hidden = [];
   scene.traverseVisible((object) => {
     const { material } = object;
     // Lights, cameras and groups stay.
     if (!material) return;
-    const isTransparent = [material].flat().every((each) => each.transparent && !(each.transmission > 0));
-    if (!isWanted(object, isTransparent)) hidden.push([object, object.layers.mask]);
+    const all = [material].flat();
+    const kind = all.some(({ transmission }) => transmission > 0) ? 'transmissive' : all.every(({ transparent }) => transparent) ? 'transparent' : 'opaque';
+    if (!isWanted(object, kind)) hidden.push([object, object.layers.mask]);
   });
   for (const [object] of hidden) object.layers.mask = 0;
   try {
+    before();
     draw();
   } finally {
     for (const [object, mask] of hidden) object.layers.mask = mask;

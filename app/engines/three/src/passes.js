@@ -1,8 +1,8 @@
 // The passes: materials and targets of three's own.
 
 import {
-  AlwaysDepth, BufferGeometry, DepthTexture, FloatType, Group, GLSL3, Mesh, NearestFilter, NoBlending, OrthographicCamera,
-  RawShaderMaterial, RedFormat, RGBAIntegerFormat, ShaderMaterial, UnsignedIntType, WebGLRenderTarget,
+  AlwaysDepth, BufferGeometry, CustomBlending, DepthTexture, FloatType, Group, GLSL3, LessEqualDepth, Mesh, NearestFilter,
+  NoBlending, OneFactor, OneMinusSrcAlphaFactor, OrthographicCamera, RawShaderMaterial, RedFormat, RGBAIntegerFormat, ShaderMaterial, UnsignedIntType, WebGLRenderTarget,
 } from 'three';
 import { guessedDepth, march, marchVertex, nearFraction, precisions, screenVertex, spans, tiles } from './shaders.js';
 
@@ -14,16 +14,51 @@ uniform ivec2 crop;
 layout(location=0)out vec4 color;
 void main(){ivec2 pixel=ivec2(gl_FragCoord.xy)+crop;color=texelFetch(color_map,pixel,0);gl_FragDepth=texelFetch(depth_map,pixel,0).r;}`;
 
-// Linear colour becomes what three's own materials would have written.
+// An eye that is composed of a wide level and of an inset, which shows through where it knows better. Depth between the
+// wide level's pixels is that of a plane where it is one, so that what lies on surfaces stays visible there.
+const composed = (fragmentShader, test) => `${fragmentShader.replace('void main()', 'void inset()')}
+uniform sampler2D wide_map;
+uniform sampler2D wide_depth;
+uniform vec4 wide_place;
+uniform vec4 inset_rect;
+uniform float wide_scale;
+float wide_at(ivec2 p){return texelFetch(wide_depth,clamp(p,ivec2(0),textureSize(wide_depth,0)-1),0).r;}
+void main(){
+bool seen=all(greaterThan(gl_FragCoord.xy,inset_rect.xy))&&all(lessThan(gl_FragCoord.xy,inset_rect.zw));
+if(seen){inset();${test}}
+if(!seen){
+vec2 place=wide_place.xy*gl_FragCoord.xy+wide_place.zw;
+color=textureLod(wide_map,place,0.0);
+vec2 at=place*vec2(textureSize(wide_depth,0));
+vec2 low=floor(at-0.5);
+vec2 t=at-0.5-low;
+ivec2 p=ivec2(low);
+vec4 d=vec4(wide_at(p),wide_at(p+ivec2(1,0)),wide_at(p+ivec2(0,1)),wide_at(p+1));
+vec2 rows=mix(d.xz,d.yw,t.x);
+vec2 nearer=max(d.xy,d.zw);
+vec2 farther=min(d.xy,d.zw);
+gl_FragDepth=wide_scale*(max(nearer.x,nearer.y)-min(farther.x,farther.y))<1.0?mix(rows.x,rows.y,t.y):wide_at(ivec2(at));}}`;
+
+/** What differs between the eyes then. */
+const OF_EYES = ['wide_map', 'wide_depth', 'wide_place', 'inset_rect', 'target_origin', 'target_size'];
+
+// A surface that comes from beyond the inset's source is a hole at its border.
+const isInside = 'float column=(origins.x*gl_FragCoord.x+origins.y-law.y*gl_FragDepth+0.5)/float(source_size.x);seen=column==clamp(column,0.0,1.0);';
+
+// Linear colour becomes what three's own materials would have written; where it covers a pixel in part, that part of it.
 const output = /* glsl */`
+uniform bool covered;
 void main(){
 picture();
+float share=covered?max(color.a,1e-4):1.0;
+color.rgb/=share;
 #ifdef TONE_MAPPING
 color.rgb=toneMapping(color.rgb);
 #endif
-color=linearToOutputTexel(color);}`;
+color=linearToOutputTexel(color);
+color.rgb*=share;}`;
 
-const writesDepth = { depthTest: true, depthWrite: true, depthFunc: AlwaysDepth };
+const writesDepth = { depthTest: true, depthWrite: true, depthFunc: AlwaysDepth, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor };
 const exact = { minFilter: NearestFilter, magFilter: NearestFilter, generateMipmaps: false };
 
 /** A target of a texel for each tile. */
@@ -34,7 +69,7 @@ export class Passes {
   #renderer;
   #camera = new OrthographicCamera();
   /** What all passes read. */
-  #shared = { depth_map: { value: null }, color_map: { value: null }, tile_map: { value: null }, span_map: { value: null } };
+  #shared = {};
   #meshes = [];
   #maps = [map(), map()];
   #tiles;
@@ -47,21 +82,24 @@ export class Passes {
   /**
    * @param {import('three').WebGLRenderer} renderer
    * @param {boolean} linear - True if colour is linear, and tone mapped and encoded after the synthesis.
+   * @param {Passes|null} [wide] - The passes of the wide level, if these are an inset's.
    */
-  constructor(renderer, linear) {
+  constructor(renderer, linear, wide = null) {
     this.#renderer = renderer;
+    this.wide = wide;
     const [tileMap, spanMap] = this.#maps;
-    this.#shared.tile_map.value = tileMap.texture;
-    this.#shared.span_map.value = spanMap.texture;
-    for (const name of ['source_size', 'target_size', 'law', 'mirrored', 'row_offset', 'target_origin', 'far_displacement', 'near_displacement', 'columns', 'origins', 'span_place', 'rows', 'first_row', 'farthest', 'source_origin', 'texel', 'crop']) this.#shared[name] = { value: null };
+    this.#shared.tile_map = { value: tileMap.texture };
+    this.#shared.span_map = { value: spanMap.texture };
     this.#tiles = this.#triangle(screenVertex, tiles);
     this.#spans = this.#triangle(screenVertex, spans);
-    this.own = this.#triangle(screenVertex, copy, writesDepth, {}, linear);
-    this.other = this.#triangle(marchVertex, march, writesDepth, {}, linear);
+    this.own = this.#triangle(screenVertex, wide ? composed(copy, '') : copy, writesDepth, wide && OF_EYES, linear);
+    this.other = this.#triangle(marchVertex, wide ? composed(march, isInside) : march, writesDepth, wide && OF_EYES, linear);
     /** Both eyes' pictures, which are drawn before everything else, whether that is in a group with an order or not. */
     this.eyes = new Group();
     this.eyes.matrixWorldAutoUpdate = false;
-    this.eyes.renderOrder = this.own.renderOrder = this.other.renderOrder = -Infinity;
+    this.eyes.renderOrder = -Infinity;
+    // After what is put at -Infinity.
+    this.own.renderOrder = this.other.renderOrder = -Number.MAX_VALUE;
     this.eyes.add(this.own, this.other);
   }
 
@@ -75,7 +113,7 @@ export class Passes {
    */
   prepare(views, color, depth, isResolved) {
     const shared = this.#shared;
-    for (const name in views.uniforms) shared[name].value = views.uniforms[name];
+    for (const name in views.uniforms) (shared[name] ??= {}).value = views.uniforms[name];
     shared.color_map.value = color;
     shared.depth_map.value = isResolved ? this.#guessFrom(views.size, depth) : depth;
     [this.#tiles, this.#spans].forEach((mesh, i) => {
@@ -84,20 +122,51 @@ export class Passes {
     });
   }
 
+  /** Draws the other eye into a target of its own. */
+  drawOther(target) {
+    this.#draw(this.other, target);
+  }
+
+  /**
+   * Has the eyes be composed of this inset and of the wide level.
+   *
+   * @param {Object} views - The inset's, from `levelsOf`.
+   * @param {number} rendered - The rendered eye.
+   * @param {WebGLRenderTarget} other - The wide level's other eye.
+   */
+  compose({ eyes }, rendered, other) {
+    const { color_map: map, depth_map: depth } = this.wide.#shared;
+    const set = ({ material }, values) => {
+      for (const name in values) (material.uniforms[name] ?? {}).value = values[name];
+    };
+    set(this.own, { ...eyes[rendered], wide_map: map.value, wide_depth: depth.value });
+    set(this.other, { ...eyes[1 - rendered], wide_map: other.texture, wide_depth: other.depthTexture });
+  }
+
+  /** Has pictures, whose alpha says how much of a pixel they cover, be drawn over what is there already, where they are nearer. */
+  set isCovering(is) {
+    (this.#shared.covered ??= {}).value = is;
+    for (const { material } of [this.own, this.other]) {
+      material.blending = is ? CustomBlending : NoBlending;
+      material.depthFunc = is ? LessEqualDepth : AlwaysDepth;
+    }
+  }
+
   /** Draws how much of the prepared source, or of another one of its eye, is nearer than a depth: 16 x 16 shares. */
   drawNear(views, nearDepth, size = views.size, depth = this.#shared.depth_map.value) {
-    const value = (of) => ({ value: of });
     this.#share ??= new WebGLRenderTarget(16, 16, { depthBuffer: false, generateMipmaps: false });
-    this.#near ??= this.#triangle(screenVertex, nearFraction, {}, { depth_map: value(null), origin: value([0, 0]), size: value(null), near_depth: value(0), reversed: value(false) });
+    this.#near ??= this.#triangle(screenVertex, nearFraction, {}, ['depth_map', 'size']);
     const { uniforms } = this.#near.material;
     uniforms.depth_map.value = depth;
     uniforms.size.value = size;
+    uniforms.origin.value = [0, 0];
     uniforms.near_depth.value = nearDepth;
     uniforms.reversed.value = views.slope > 0;
     this.#draw(this.#near, this.#share);
   }
 
   dispose() {
+    this.wide?.dispose();
     for (const target of [...this.#maps, this.#guessed, this.#share]) {
       target?.depthTexture?.dispose();
       target?.dispose();
@@ -113,7 +182,7 @@ export class Passes {
     if (!this.#guessed) {
       this.#guessed = new WebGLRenderTarget(1, 1, { ...exact, format: RedFormat });
       this.#guessed.depthTexture = new DepthTexture(1, 1, depth.type === FloatType ? FloatType : UnsignedIntType);
-      this.#guess = this.#triangle(screenVertex, guessedDepth, { ...writesDepth, colorWrite: false }, { depth_map: { value: null } });
+      this.#guess = this.#triangle(screenVertex, guessedDepth, { ...writesDepth, colorWrite: false }, ['depth_map']);
     }
     this.#guessed.setSize(...size);
     this.#guess.material.uniforms.depth_map.value = depth;
@@ -126,14 +195,18 @@ export class Passes {
     this.#renderer.render(mesh, this.#camera);
   }
 
-  /** Returns a triangle over the viewport, without vertex buffers. */
-  #triangle(vertexShader, fragmentShader, settings = {}, own = {}, linear = false) {
+  /** Returns a triangle over the viewport, without vertex buffers. It shares the uniforms that are not its own. */
+  #triangle(vertexShader, fragmentShader, settings = {}, own = [], linear = false) {
     const geometry = new BufferGeometry();
     geometry.setDrawRange(0, 3);
     const Material = linear ? ShaderMaterial : RawShaderMaterial;
     if (linear) fragmentShader = fragmentShader.replace('void main()', 'void picture()') + output;
+    const uniforms = {};
+    for (const [, name] of (vertexShader + fragmentShader).matchAll(/uniform .*?(\w+);/g)) {
+      uniforms[name] = own?.includes(name) ? { value: null } : this.#shared[name] ??= { value: null };
+    }
     const mesh = new Mesh(geometry, new Material({
-      name: 'yoro', vertexShader, fragmentShader, uniforms: { ...this.#shared, ...own }, glslVersion: GLSL3,
+      name: 'yoro', vertexShader, fragmentShader, uniforms, glslVersion: GLSL3,
       blending: NoBlending, depthTest: false, depthWrite: false, ...settings,
     }));
     mesh.frustumCulled = mesh.matrixAutoUpdate = mesh.matrixWorldAutoUpdate = false;

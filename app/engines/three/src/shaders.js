@@ -2,29 +2,26 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 export const precisions = 'precision highp float;precision highp int;precision highp sampler2D;precision highp usampler2D;';
 export const screenVertex = /* glsl */`${precisions}
-void main(){int id=gl_VertexID;vec2 corner=vec2(float((id<<1)&2),float(id&2));gl_Position=vec4(corner*2.0-1.0,0.0,1.0);}`;
+void main(){int id=gl_VertexID;vec2 K=vec2(float((id<<1)&2),float(id&2));gl_Position=vec4(K*2.0-1.0,0.0,1.0);}`;
 export const marchVertex = /* glsl */`${precisions}
 uniform ivec2 target_size;
 uniform ivec2 target_origin;
 uniform vec4 span_place;
 out vec2 span_at;
-void main(){int id=gl_VertexID;vec2 corner=vec2(float((id<<1)&2),float(id&2));vec2 pixel=vec2(target_origin)+corner*vec2(target_size);span_at=span_place.xy*pixel+span_place.zw;gl_Position=vec4(corner*2.0-1.0,0.0,1.0);}`;
+void main(){int id=gl_VertexID;vec2 K=vec2(float((id<<1)&2),float(id&2));vec2 J=vec2(target_origin)+K*vec2(target_size);span_at=span_place.xy*J+span_place.zw;gl_Position=vec4(K*2.0-1.0,0.0,1.0);}`;
 export const guessedDepth = /* glsl */`${precisions}
-const bool PART=false;
 uniform ivec2 source_size;
 uniform vec2 law;
-uniform ivec2 source_origin;
 uniform sampler2D depth_map;
 uniform sampler2D color_map;
-const float NEARER=0.5;
-const float SHARE=0.15;
-const ivec2 BESIDE[4]=ivec2[4](ivec2(-1,0),ivec2(1,0),ivec2(0,-1),ivec2(0,1));
-ivec2 place(ivec2 pixel){ivec2 first=PART?source_origin:ivec2(0);return clamp(pixel,first,first+source_size-1);}
-float moves(ivec2 pixel){return law.y*texelFetch(depth_map,(place(pixel)),0).r;}
-vec3 shown(ivec2 pixel){return texelFetch(color_map,(place(pixel)),0).rgb;}
-void main(){ivec2 pixel=ivec2(gl_FragCoord.xy);float behind=moves(pixel)+NEARER;float nearest=behind;ivec2 to=ivec2(0);for(int i=0;i<4;++i){float beside=moves(pixel+BESIDE[i]);to=beside>nearest?BESIDE[i]:to;nearest=max(nearest,beside);}gl_FragDepth=texelFetch(depth_map,(place(pixel)),0).r;if(to!=ivec2(0)){vec3 front=shown(pixel+(moves(pixel+2*to)>behind?2:1)*to);vec3 here=shown(pixel);vec3 back=moves(pixel-to)>behind?here:shown(pixel-to);vec3 contrast=front-back;if(dot(here-back,contrast)>SHARE*max(dot(contrast,contrast),1e-4)){gl_FragDepth=texelFetch(depth_map,(place(pixel+to)),0).r;}}}`;
+const float Dm=0.5;
+const float Dn=0.15;
+const ivec2 Cb[4]=ivec2[4](ivec2(-1,0),ivec2(1,0),ivec2(0,-1),ivec2(0,1));
+ivec2 F(ivec2 J){ivec2 I=ivec2(0);return clamp(J,I,I+source_size-1);}
+float Bj(ivec2 J){return law.y*texelFetch(depth_map,(F(J)),0).r;}
+vec3 By(ivec2 J){return texelFetch(color_map,(F(J)),0).rgb;}
+void main(){ivec2 J=ivec2(gl_FragCoord.xy);float Ab=Bj(J)+Dm;float Bv=Ab;ivec2 to=ivec2(0);for(int i=0;i<4;++i){float B=Bj(J+Cb[i]);to=B>Bv?Cb[i]:to;Bv=max(Bv,B);}gl_FragDepth=texelFetch(depth_map,(F(J)),0).r;if(to!=ivec2(0)){vec3 Du=By(J+(Bj(J+2*to)>Ab?2:1)*to);vec3 Cn=By(J);vec3 Ce=Bj(J-to)>Ab?Cn:By(J-to);vec3 Bo=Du-Ce;if(dot(Cn-Ce,Bo)>Dn*max(dot(Bo,Bo),1e-4)){gl_FragDepth=texelFetch(depth_map,(F(J+to)),0).r;}}}`;
 export const tiles = /* glsl */`${precisions}
-const bool PART=false;
 uniform ivec2 source_size;
 uniform vec2 law;
 uniform bool mirrored;
@@ -32,24 +29,24 @@ uniform float far_displacement;
 uniform vec2 columns;
 uniform ivec2 source_origin;
 uniform vec2 texel;
-const ivec2 TILE=ivec2(16,8);
+const ivec2 A=ivec2(16,8);
 uniform sampler2D depth_map;
-float nearest_of(vec4 texel){return texel.r;}
-float depth_sample(vec2 place){return nearest_of(textureLod(depth_map,(place),0.0));}
-vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(nearest_of(texelFetch(depth_map,(ivec2(low.x,high.y)),0)),nearest_of(texelFetch(depth_map,(high),0)),nearest_of(texelFetch(depth_map,(ivec2(high.x,low.y)),0)),nearest_of(texelFetch(depth_map,(low),0)));}
-float displacement(float depth){return law.x+law.y*depth;}
-vec2 place_of(vec2 at){at=PART?clamp(at,vec2(0.5),vec2(source_size)-0.5):at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
-const float TILE_UNITS=16.0;
-vec4 depth_quad(vec2 corner){vec2 last=vec2(source_size-2);vec2 at=PART?clamp(corner,vec2(0.0),max(last,vec2(0.0))):corner;float row=at.y+1.0;row=PART?(float(source_origin.y)+row)*texel.y:row/float(source_size.y);vec4 quad=depth_gather(vec2(columns.x*(at.x+1.0)+columns.y,row));return quad;}
-uint pack_interval(float low,float high){float lowest=clamp(floor((low-far_displacement)*TILE_UNITS),0.0,65534.0);float highest=clamp(ceil((high-far_displacement)*TILE_UNITS),0.0,65535.0);return uint(lowest)|(uint(highest)<<16);}
-uint reversed_bits(uint bits){bits=bits>>16|bits<<16;bits=(bits&0xff00ff00u)>>8|(bits&0x00ff00ffu)<<8;bits=(bits&0xf0f0f0f0u)>>4|(bits&0x0f0f0f0fu)<<4;bits=(bits&0xccccccccu)>>2|(bits&0x33333333u)<<2;return(bits&0xaaaaaaaau)>>1|(bits&0x55555555u)<<1;}
-const float PLANAR=1.0/16.0;
-const float NO_PLANE=9.0;
-const float MARKED=0.99;
-uint in_place(uint marks){return mirrored?marks>>16|marks<<16:reversed_bits(marks);}
-uvec4 plane_tile(vec2 corner){const vec2 LAST=vec2(TILE.x,TILE.y-1);vec2 middle=corner+0.5;float first=depth_sample(place_of(middle));float right=depth_sample(place_of(middle+vec2(LAST.x,0.0)));float above=depth_sample(place_of(middle+vec2(0.0,LAST.y)));float opposite=depth_sample(place_of(middle+LAST));vec2 slope=(vec2(right,above)-first)/LAST;slope=abs(law.y*(first-right-above+opposite))<=4.0*PLANAR?slope:vec2(0.0);vec4 low=vec4(1e9);vec4 high=vec4(-1e9);float plane=0.0;uint lower_marks=0u;uint marks=0u;float marked=MARKED/abs(law.y);float begin=mirrored?LAST.x-1.0:0.0;float sense=mirrored?-1.0:1.0;for(float row=corner.y;row<corner.y+float(TILE.y);row+=2.0){lower_marks=row==corner.y+4.0?marks:lower_marks;vec2 before=vec2(0.0);for(int i=0;i<=TILE.x;i+=2){float column=begin+sense*float(min(i,TILE.x-1));vec4 quad=depth_quad(vec2(corner.x+column,row));vec4 depths=quad-(plane+slope.x*column);low=min(low,depths);high=max(high,depths);vec2 between=abs(quad.xw-before);vec2 within=abs(quad.yz-quad.xw);before=quad.yz;if(i>0&&i<TILE.x){marks=marks<<1|uint(max(between.x,between.y)>marked);}marks=marks<<1|uint(max(within.x,within.y)>marked);}plane+=2.0*slope.y;}vec4 second=slope.x*(mirrored?vec4(1,0,0,1):vec4(0,1,1,0))+slope.y*vec4(1,1,0,0);low-=second;high-=second;low.xy=min(low.xy,low.zw);high.xy=max(high.xy,high.zw);float least=min(low.x,low.y);float most=max(high.x,high.y);vec2 rise=slope*LAST;float a=displacement(least+min(rise.x,0.0)+min(rise.y,0.0));float b=displacement(most+max(rise.x,0.0)+max(rise.y,0.0));vec3 plane_law=vec3(displacement(0.5*(least+most)),law.y*slope);bool planar=abs(law.y)*(most-least)<=2.0*PLANAR&&abs(plane_law.y-0.25)<0.75;uvec3 rest=planar?floatBitsToUint(plane_law):uvec3(in_place(lower_marks),floatBitsToUint(NO_PLANE),in_place(marks));return uvec4(pack_interval(min(a,b),max(a,b)),rest);}
+float S(vec4 texel){return texel.r;}
+float Ae(vec2 F){return S(textureLod(depth_map,(F),0.0));}
+vec4 Bp(vec2 F){ivec2 H=textureSize(depth_map,0).xy-1;ivec2 K=ivec2(floor(F*vec2(H+1)-0.5));ivec2 E=clamp(K,ivec2(0),H);ivec2 C=clamp(K+1,ivec2(0),H);return vec4(S(texelFetch(depth_map,(ivec2(E.x,C.y)),0)),S(texelFetch(depth_map,(C),0)),S(texelFetch(depth_map,(ivec2(C.x,E.y)),0)),S(texelFetch(depth_map,(E),0)));}
+float Bq(float P){return law.x+law.y*P;}
+vec2 Ap(vec2 at){at=at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
+const float Aa=16.0;
+vec4 Dr(vec2 K){vec2 H=vec2(source_size-2);vec2 at=K;float M=at.y+1.0;M=M/float(source_size.y);vec4 W=Bp(vec2(columns.x*(at.x+1.0)+columns.y,M));return W;}
+uint Dz(float E,float C){float Bi=clamp(floor((E-far_displacement)*Aa),0.0,65534.0);float Bh=clamp(ceil((C-far_displacement)*Aa),0.0,65535.0);return uint(Bi)|(uint(Bh)<<16);}
+uint Eh(uint L){L=L>>16|L<<16;L=(L&0xff00ff00u)>>8|(L&0x00ff00ffu)<<8;L=(L&0xf0f0f0f0u)>>4|(L&0x0f0f0f0fu)<<4;L=(L&0xccccccccu)>>2|(L&0x33333333u)<<2;return(L&0xaaaaaaaau)>>1|(L&0x55555555u)<<1;}
+const float Be=1.0/16.0;
+const float As=9.0;
+const float Dl=0.99;
+uint Co(uint N){return mirrored?N>>16|N<<16:Eh(N);}
+uvec4 Ec(vec2 K){const vec2 Ah=vec2(A.x,A.y-1);vec2 V=K+0.5;float I=Ae(Ap(V));float X=Ae(Ap(V+vec2(Ah.x,0.0)));float Bf=Ae(Ap(V+vec2(0.0,Ah.y)));float Dy=Ae(Ap(V+Ah));vec2 Q=(vec2(X,Bf)-I)/Ah;Q=abs(law.y*(I-X-Bf+Dy))<=4.0*Be?Q:vec2(0.0);vec4 E=vec4(1e9);vec4 C=vec4(-1e9);float Aq=0.0;uint Bu=0u;uint N=0u;float Cs=Dl/abs(law.y);float Do=mirrored?Ah.x-1.0:0.0;float Em=mirrored?-1.0:1.0;for(float M=K.y;M<K.y+float(A.y);M+=2.0){Bu=M==K.y+4.0?N:Bu;vec2 Cf=vec2(0.0);for(int i=0;i<=A.x;i+=2){float Ad=Do+Em*float(min(i,A.x-1));vec4 W=Dr(vec2(K.x+Ad,M));vec4 G=W-(Aq+Q.x*Ad);E=min(E,G);C=max(C,G);vec2 Cg=abs(W.xw-Cf);vec2 Bd=abs(W.yz-W.xw);Cf=W.yz;if(i>0&&i<A.x){N=N<<1|uint(max(Cg.x,Cg.y)>Cs);}N=N<<1|uint(max(Bd.x,Bd.y)>Cs);}Aq+=2.0*Q.y;}vec4 Cz=Q.x*(mirrored?vec4(1,0,0,1):vec4(0,1,1,0))+Q.y*vec4(1,1,0,0);E-=Cz;C-=Cz;E.xy=min(E.xy,E.zw);C.xy=max(C.xy,C.zw);float An=min(E.x,E.y);float Ao=max(C.x,C.y);vec2 Bk=Q*Ah;float a=Bq(An+min(Bk.x,0.0)+min(Bk.y,0.0));float b=Bq(Ao+max(Bk.x,0.0)+max(Bk.y,0.0));vec3 Cy=vec3(Bq(0.5*(An+Ao)),law.y*Q);bool Bb=abs(law.y)*(Ao-An)<=2.0*Be&&abs(Cy.y-0.25)<0.75;uvec3 Eg=Bb?floatBitsToUint(Cy):uvec3(Co(Bu),floatBitsToUint(As),Co(N));return uvec4(Dz(min(a,b),max(a,b)),Eg);}
 layout(location=0)out uvec4 tile;
-void main(){tile=plane_tile((gl_FragCoord.xy-0.5)*vec2(TILE));}`;
+void main(){tile=Ec((gl_FragCoord.xy-0.5)*vec2(A));}`;
 export const spans = /* glsl */`${precisions}
 uniform ivec2 source_size;
 uniform ivec2 target_size;
@@ -61,21 +58,20 @@ uniform vec2 columns;
 uniform vec2 origins;
 uniform vec2 rows;
 uniform float first_row;
-const ivec2 TILE=ivec2(16,8);
-const float TILE_UNITS=16.0;
-const uint SPAN_COLUMNS=0x3ffu;
-uint pack_span(float reach,float columns){return((floatBitsToUint(reach)+SPAN_COLUMNS)&~SPAN_COLUMNS)|min(uint(columns),SPAN_COLUMNS);}
+const ivec2 A=ivec2(16,8);
+const float Aa=16.0;
+const uint Aj=0x3ffu;
+uint Ea(float Ee,float columns){return((floatBitsToUint(Ee)+Aj)&~Aj)|min(uint(columns),Aj);}
 uniform highp usampler2D tile_map;
-const float PLANAR=1.0/16.0;
-const float NO_PLANE=9.0;
-const int LAW_TILES=4;
-vec3 landing(int source_tile,int row){vec3 plane=uintBitsToFloat(texelFetch(tile_map,ivec2(source_tile,row),0).yzw);float first=float(source_tile*TILE.x)+plane.x;return vec3(first,first+float(TILE.y-1)*plane.z,plane.y);}
-bool repeats_border(int row){int rows=(source_size.y+TILE.y-1)/TILE.y;return(row==0&&row_offset>0)||(row==rows-1&&target_size.y-row_offset>source_size.y);}
-vec3 tile_plane(ivec2 tile,int left,int right){if(left>right||right>=left+LAW_TILES||repeats_border(tile.y)){return vec3(0.0);}float first=float(tile.x*TILE.x);float last=first+float(TILE.x-1);vec4 ends=vec2(first,last).xyxy;vec4 corners=vec4(0.0);bool planar=true;for(int s=left;s<=right;++s){vec3 lands=landing(s,tile.y);planar=planar&&lands.z<NO_PLANE;vec4 place=float(s*TILE.x)+(ends-lands.xxyy)/(1.0+lands.z);corners=mix(corners,place,s==left?bvec4(true):lessThanEqual(lands.xxyy,ends));}vec2 slope=vec2(corners.y-corners.x,corners.z-corners.x)/vec2(TILE.x-1,TILE.y-1);float error=abs(corners.w-corners.y-corners.z+corners.x);for(int s=left+1;s<=right;++s){vec2 lands=landing(s,tile.y).xy;vec2 off=abs(corners.xz+slope.x*(lands-first)-float(s*TILE.x));bvec2 inside=lessThan(abs(lands-0.5*(first+last)),vec2(0.5*(last-first)));error=max(error,max(inside.x?off.x:0.0,inside.y?off.y:0.0));}vec4 middle=vec4(0.5*float(source_size.x-1));if(!planar||!(error<=PLANAR)||any(greaterThan(abs(corners-middle),middle))){return vec3(0.0);}float column=corners.x+slope.x*(origins.y+law.x-first)-slope.y*(first_row+0.5+float(tile.y*TILE.y));return vec3(columns.x*(column+0.5)+columns.y,columns.x*slope*vec2(origins.x,1.0));}
+const float Be=1.0/16.0;
+const float As=9.0;
+const int Dk=4;
+vec3 Cr(int Db,int M){vec3 Aq=uintBitsToFloat(texelFetch(tile_map,ivec2(Db,M),0).yzw);float I=float(Db*A.x)+Aq.x;return vec3(I,I+float(A.y-1)*Aq.z,Aq.y);}
+bool Ef(int M){int rows=(source_size.y+A.y-1)/A.y;return(M==0&&row_offset>0)||(M==rows-1&&target_size.y-row_offset>source_size.y);}
+vec3 Eq(ivec2 tile,int Z,int X){if(Z>X||X>=Z+Dk||Ef(tile.y)){return vec3(0.0);}float I=float(tile.x*A.x);float H=I+float(A.x-1);vec4 Cl=vec2(I,H).xyxy;vec4 O=vec4(0.0);bool Bb=true;for(int s=Z;s<=X;++s){vec3 Af=Cr(s,tile.y);Bb=Bb&&Af.z<As;vec4 F=float(s*A.x)+(Cl-Af.xxyy)/(1.0+Af.z);O=mix(O,F,s==Z?bvec4(true):lessThanEqual(Af.xxyy,Cl));}vec2 Q=vec2(O.y-O.x,O.z-O.x)/vec2(A.x-1,A.y-1);float Br=abs(O.w-O.y-O.z+O.x);for(int s=Z+1;s<=X;++s){vec2 Af=Cr(s,tile.y).xy;vec2 Cw=abs(O.xz+Q.x*(Af-I)-float(s*A.x));bvec2 Cp=lessThan(abs(Af-0.5*(I+H)),vec2(0.5*(H-I)));Br=max(Br,max(Cp.x?Cw.x:0.0,Cp.y?Cw.y:0.0));}vec4 V=vec4(0.5*float(source_size.x-1));if(!Bb||!(Br<=Be)||any(greaterThan(abs(O-V),V))){return vec3(0.0);}float Ad=O.x+Q.x*(origins.y+law.x-I)-Q.y*(first_row+0.5+float(tile.y*A.y));return vec3(columns.x*(Ad+0.5)+columns.y,columns.x*Q*vec2(origins.x,1.0));}
 layout(location=0)out uvec4 span;
-void main(){ivec2 tile=ivec2(gl_FragCoord.xy);float first=float(tile.x*TILE.x);float last=first+float(TILE.x-1);int tiles=(source_size.x+TILE.x-1)/TILE.x;int from=clamp(int(floor((first-near_displacement-1.0)/float(TILE.x)))-1,0,tiles-1);int to=clamp(int(floor((last-far_displacement+1.0)/float(TILE.x))),0,tiles-1);const int PITCH=TILE.x*int(TILE_UNITS);int least=int(floor((first-1.0-far_displacement-float((from+1)*TILE.x))*TILE_UNITS));int most=int(ceil((last+1.0-far_displacement-float(from*TILE.x))*TILE_UNITS));int low=0xffff;int high=0;int left=tiles;int right=0;for(int s=from;s<=to;++s){uint moved=texelFetch(tile_map,ivec2(s,tile.y),0).r;int lowest=max(int(moved&0xffffu),least);int highest=min(int(moved>>16),most);if(lowest<=highest){low=min(low,lowest);high=max(high,highest);left=min(left,s);right=s;}least-=PITCH;most-=PITCH;}if(high<low){low=high=2*tile.x*TILE.x<target_size.x?0xffff:0;}uint search=pack_span(float(high)/TILE_UNITS,ceil(float(high-low)/TILE_UNITS)+2.0);span=uvec4(search,0u,0u,0u);vec3 affine=tile_plane(tile,left,right);if(affine.y!=0.0){span.xyz=floatBitsToUint(affine);}}`;
+void main(){ivec2 tile=ivec2(gl_FragCoord.xy);float I=float(tile.x*A.x);float H=I+float(A.x-1);int Ca=(source_size.x+A.x-1)/A.x;int Bs=clamp(int(floor((I-near_displacement-1.0)/float(A.x)))-1,0,Ca-1);int to=clamp(int(floor((H-far_displacement+1.0)/float(A.x))),0,Ca-1);const int Cd=A.x*int(Aa);int An=int(floor((I-1.0-far_displacement-float((Bs+1)*A.x))*Aa));int Ao=int(ceil((H+1.0-far_displacement-float(Bs*A.x))*Aa));int E=0xffff;int C=0;int Z=Ca;int X=0;for(int s=Bs;s<=to;++s){uint Cu=texelFetch(tile_map,ivec2(s,tile.y),0).r;int Bi=max(int(Cu&0xffffu),An);int Bh=min(int(Cu>>16),Ao);if(Bi<=Bh){E=min(E,Bi);C=max(C,Bh);Z=min(Z,s);X=s;}An-=Cd;Ao-=Cd;}if(C<E){E=C=2*tile.x*A.x<target_size.x?0xffff:0;}uint Ej=Ea(float(C)/Aa,ceil(float(C-E)/Aa)+2.0);span=uvec4(Ej,0u,0u,0u);vec3 Al=Eq(tile,Z,X);if(Al.y!=0.0){span.xyz=floatBitsToUint(Al);}}`;
 export const march = /* glsl */`${precisions}
-const bool PART=false;
 uniform ivec2 source_size;
 uniform vec2 law;
 uniform bool mirrored;
@@ -86,51 +82,51 @@ uniform float first_row;
 uniform float farthest;
 uniform ivec2 source_origin;
 uniform vec2 texel;
-const float MAX_STRETCH=2.0;
-const ivec2 TILE=ivec2(16,8);
+const float Bn=2.0;
+const ivec2 A=ivec2(16,8);
 uniform sampler2D depth_map;
 uniform sampler2D color_map;
-float nearest_of(vec4 texel){return texel.r;}
-float depth_sample(vec2 place){return nearest_of(textureLod(depth_map,(place),0.0));}
-vec4 color_sample(vec2 place){return textureLod(color_map,(place),0.0);}
-vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(nearest_of(texelFetch(depth_map,(ivec2(low.x,high.y)),0)),nearest_of(texelFetch(depth_map,(high),0)),nearest_of(texelFetch(depth_map,(ivec2(high.x,low.y)),0)),nearest_of(texelFetch(depth_map,(low),0)));}
-vec2 place_of(vec2 at){at=PART?clamp(at,vec2(0.5),vec2(source_size)-0.5):at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
-float column_at(float x){return place_of(vec2(x+0.5,0.5)).x;}
-float row_at(float away){return PART?place_of(vec2(0.5,gl_FragCoord.y-first_row+away)).y:rows.x*(gl_FragCoord.y+away)+rows.y;}
-const uint SPAN_COLUMNS=0x3ffu;
-float span_steps(uint span){uint steps=span&SPAN_COLUMNS;return steps==SPAN_COLUMNS?1e9:float(steps);}
+float S(vec4 texel){return texel.r;}
+float Ae(vec2 F){return S(textureLod(depth_map,(F),0.0));}
+vec4 Av(vec2 F){return textureLod(color_map,(F),0.0);}
+vec4 Bp(vec2 F){ivec2 H=textureSize(depth_map,0).xy-1;ivec2 K=ivec2(floor(F*vec2(H+1)-0.5));ivec2 E=clamp(K,ivec2(0),H);ivec2 C=clamp(K+1,ivec2(0),H);return vec4(S(texelFetch(depth_map,(ivec2(E.x,C.y)),0)),S(texelFetch(depth_map,(C),0)),S(texelFetch(depth_map,(ivec2(C.x,E.y)),0)),S(texelFetch(depth_map,(E),0)));}
+vec2 Ap(vec2 at){at=at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
+float Aw(float x){return Ap(vec2(x+0.5,0.5)).x;}
+float Ag(float Am){return rows.x*(gl_FragCoord.y+Am)+rows.y;}
+const uint Aj=0x3ffu;
+float Eo(uint span){uint Dc=span&Aj;return Dc==Aj?1e9:float(Dc);}
 uniform highp usampler2D span_map;
 in vec2 span_at;
-uvec4 pixel_span(){return texture(span_map,span_at);}
-float lowest_bit(uint bits){float power=float(bits&(~bits+1u));return float(floatBitsToUint(power)>>23)-127.0;}
-const float NO_PLANE=9.0;
+uvec4 Eb(){return texture(span_map,span_at);}
+float Dw(uint L){float Ed=float(L&(~L+1u));return float(floatBitsToUint(Ed)>>23)-127.0;}
+const float As=9.0;
 uniform highp usampler2D tile_map;
-struct Surface{float source;float depth;bool hole;};
-struct Edge{float x;float depth;};
-vec4 tap_beside(Edge edge,float distance,out float nearer){vec2 place=vec2(column_at(edge.x),row_at(distance));nearer=law.y*(depth_sample(place)-edge.depth);return color_sample(place);}
-vec4 fill_hole(Edge edge,vec4 color,float away){float spread=0.5*clamp(abs(away),1.0,12.0);vec4 sum=2.0*color;float weights=2.0;for(int i=1;i<=2;++i){float distance=roundEven(float(i)*spread);vec2 nearer;vec4 below=tap_beside(edge,-distance,nearer.x);vec4 above=tap_beside(edge,distance,nearer.y);vec2 weight=vec2(lessThanEqual(nearer,vec2(1.0)));sum+=weight.x*below+weight.y*above;weights+=weight.x+weight.y;}return sum/weights;}
-struct Search{float x;vec2 depths;float a;float b;};
-vec2 depth_pair(float x){vec4 quad=depth_gather(vec2(columns.x*(x+1.25)+columns.y,row_at(0.25)));return mirrored?quad.zw:quad.wz;}
-Search search_at(float x,float origin){vec2 depths=depth_pair(x);float shift=x-origin;return Search(x,depths,shift+law.y*depths.x,shift+1.0+law.y*depths.y);}
-bool is_event(float a,float b){return a<=0.0&&(b>0.0||max(b,-1.0)<a);}
-float segment_end(float x,int tile_row,bool below,uint shift){uint column=uint(x);uint within=column%uint(TILE.x);uvec4 tile=texelFetch(tile_map,ivec2(column/uint(TILE.x),tile_row),0);uint marks=(below?tile.y:tile.w)>>(shift+within);marks=tile.z==floatBitsToUint(NO_PLANE)?marks:0u;return x+lowest_bit(marks|0x10000u>>within);}
-struct Beside{float edge;float edge_depth;float rim;float rim_depth;};
-bool meet(inout Beside beside,Search at){bool jump=at.b>0.0;bool torn=at.b-at.a>=MAX_STRETCH;bool rim=beside.rim<0.0&&(!jump||(torn&&at.b<1.0));beside.rim=rim?at.x+(jump?1.0:0.0):beside.rim;beside.rim_depth=rim?(jump?at.depths.y:at.depths.x):beside.rim_depth;bool farther=jump&&law.y*(at.depths.x-beside.edge_depth)<0.0;beside.edge=farther?at.x:beside.edge;beside.edge_depth=farther?at.depths.x:beside.edge_depth;return jump&&(at.a>-0.5||!torn);}
-vec4 march(Search at,float end,float origin,int row,out Surface surface){float border=at.a-at.x;bool outside=at.x<=0.0&&border>0.0;end=outside&&border<0.5?0.0:end;Beside beside;beside.edge=outside?0.0:-1.0;beside.edge_depth=outside?at.depths.x:law.y<0.0?-1e9:1e9;beside.rim=-1.0;beside.rim_depth=0.0;bool found=false;if(at.x>=0.0&&at.x<end&&is_event(at.a,at.b)){found=meet(beside,at);}float x=max(at.x+1.0,0.0);float a=at.b+(x-at.x-1.0);int tile_row=row/TILE.y;bool below=(row&4)==0;uint shift=uint(row&2)<<3;bool crosses=false;while(x<=end&&!found){at=search_at(min(segment_end(x,tile_row,below,shift),end),origin);crosses=a<=0.0&&at.a>0.0;found=crosses;if(!crosses&&at.x<end&&is_event(at.a,at.b)){found=meet(beside,at);}x=found?x:at.x+1.0;a=found?a:at.b;}float last=at.x;float b=at.a;while(crosses&&x<last){at=search_at(clamp(floor(x+(last-x)*a/(a-b)),x,last-1.0),origin);crosses=at.a>0.0||at.b<=0.0;bool behind=at.a>0.0;x=behind?x:at.x+1.0;a=behind?a:at.b;last=behind?at.x:last;b=behind?at.a:b;}bool own=found||beside.edge<0.0;x=own?min(at.x,end):beside.edge;float t=found&&at.b-at.a<MAX_STRETCH?-at.a/(at.b-at.a):0.0;surface.source=x+t;surface.depth=own?mix(at.depths.x,at.depths.y,t):beside.edge_depth;float away=x-origin+law.y*surface.depth;surface.hole=!found&&abs(away)>=0.5;vec4 color=color_sample(vec2(column_at(surface.source),row_at(0.0)));if(surface.hole){color=fill_hole(Edge(x,surface.depth),color,away);}if(beside.rim>=0.0){float coverage=1.0-abs(beside.rim-origin+law.y*beside.rim_depth);color=mix(color,color_sample(vec2(column_at(beside.rim),row_at(0.0))),coverage);if(coverage>=0.5){surface=Surface(beside.rim,beside.rim_depth,false);}}return color;}
+struct Ak{float Ac;float P;bool Bt;};
+struct Bm{float x;float P;};
+vec4 Df(Bm R,float Bg,out float Ba){vec2 F=vec2(Aw(R.x),Ag(Bg));Ba=law.y*(Ae(F)-R.P);return Av(F);}
+vec4 Dt(Bm R,vec4 color,float Am){float Ep=0.5*clamp(abs(Am),1.0,12.0);vec4 De=2.0*color;float Dh=2.0;for(int i=1;i<=2;++i){float Bg=roundEven(float(i)*Ep);vec2 Ba;vec4 Au=Df(R,-Bg,Ba.x);vec4 Bf=Df(R,Bg,Ba.y);vec2 Bl=vec2(lessThanEqual(Ba,vec2(1.0)));De+=Bl.x*Au+Bl.y*Bf;Dh+=Bl.x+Bl.y;}return De/Dh;}
+struct At{float x;vec2 G;float a;float b;};
+vec2 Ck(float x){vec4 W=Bp(vec2(columns.x*(x+1.25)+columns.y,Ag(0.25)));return mirrored?W.zw:W.wz;}
+At Bx(float x,float origin){vec2 G=Ck(x);float Ar=x-origin;return At(x,G,Ar+law.y*G.x,Ar+1.0+law.y*G.y);}
+bool Cq(float a,float b){return a<=0.0&&(b>0.0||max(b,-1.0)<a);}
+float El(float x,int Bz,bool Au,uint Ar){uint Ad=uint(x);uint Bd=Ad%uint(A.x);uvec4 tile=texelFetch(tile_map,ivec2(Ad/uint(A.x),Bz),0);uint N=(Au?tile.y:tile.w)>>(Ar+Bd);N=tile.z==floatBitsToUint(As)?N:0u;return x+Dw(N|0x10000u>>Bd);}
+struct Cc{float R;float Ay;float T;float Bc;};
+bool Ct(inout Cc B,At at){bool Az=at.b>0.0;bool Dg=at.b-at.a>=Bn;bool T=B.T<0.0&&(!Az||(Dg&&at.b<1.0));B.T=T?at.x+(Az?1.0:0.0):B.T;B.Bc=T?(Az?at.G.y:at.G.x):B.Bc;bool Cm=Az&&law.y*(at.G.x-B.Ay)<0.0;B.R=Cm?at.x:B.R;B.Ay=Cm?at.G.x:B.Ay;return Az&&(at.a>-0.5||!Dg);}
+vec4 Dx(At at,float U,float origin,int M,out Ak D){float Ch=at.a-at.x;bool Bw=at.x<=0.0&&Ch>0.0;U=Bw&&Ch<0.5?0.0:U;Cc B;B.R=Bw?0.0:-1.0;B.Ay=Bw?at.G.x:law.y<0.0?-1e9:1e9;B.T=-1.0;B.Bc=0.0;bool Y=false;if(at.x>=0.0&&at.x<U&&Cq(at.a,at.b)){Y=Ct(B,at);}float x=max(at.x+1.0,0.0);float a=at.b+(x-at.x-1.0);int Bz=M/A.y;bool Au=(M&4)==0;uint Ar=uint(M&2)<<3;bool Ax=false;while(x<=U&&!Y){at=Bx(min(El(x,Bz,Au,Ar),U),origin);Ax=a<=0.0&&at.a>0.0;Y=Ax;if(!Ax&&at.x<U&&Cq(at.a,at.b)){Y=Ct(B,at);}x=Y?x:at.x+1.0;a=Y?a:at.b;}float H=at.x;float b=at.a;while(Ax&&x<H){at=Bx(clamp(floor(x+(H-x)*a/(a-b)),x,H-1.0),origin);Ax=at.a>0.0||at.b<=0.0;bool Ab=at.a>0.0;x=Ab?x:at.x+1.0;a=Ab?a:at.b;H=Ab?at.x:H;b=Ab?at.a:b;}bool Cx=Y||B.R<0.0;x=Cx?min(at.x,U):B.R;float t=Y&&at.b-at.a<Bn?-at.a/(at.b-at.a):0.0;D.Ac=x+t;D.P=Cx?mix(at.G.x,at.G.y,t):B.Ay;float Am=x-origin+law.y*D.P;D.Bt=!Y&&abs(Am)>=0.5;vec4 color=Av(vec2(Aw(D.Ac),Ag(0.0)));if(D.Bt){color=Dt(Bm(x,D.P),color,Am);}if(B.T>=0.0){float Cj=1.0-abs(B.T-origin+law.y*B.Bc);color=mix(color,Av(vec2(Aw(B.T),Ag(0.0))),Cj);if(Cj>=0.5){D=Ak(B.T,B.Bc,false);}}return color;}
 layout(location=0)out vec4 color;
-int source_row(){return int(clamp(gl_FragCoord.y-first_row,0.0,float(source_size.y-1)));}
-const float FIRST_STEPS=2.0;
-vec4 sample_planar(vec3 affine,out Surface surface){float place=affine.x+affine.y*gl_FragCoord.x+affine.z*gl_FragCoord.y;surface.source=clamp((place-columns.y)/columns.x-0.5,0.0,float(source_size.x-1));surface.depth=(origins.x*gl_FragCoord.x+origins.y-surface.source)/law.y;if(law.y==0.0){vec2 depths=depth_pair(floor(surface.source));surface.depth=mix(depths.x,depths.y,fract(surface.source));}surface.hole=false;vec2 at=vec2(place,row_at(0.0));return color_sample(at);}
-vec4 searched(uint span,out Surface surface){float origin=origins.x*gl_FragCoord.x+origins.y;Search at=search_at(floor(origin-farthest-uintBitsToFloat(span)),origin);float end=min(max(at.x,0.0)+span_steps(span),float(source_size.x-1));float limit=min(at.x+FIRST_STEPS,end);for(;at.x<limit&&at.b<=0.0&&max(at.b,-1.0)>=at.a;at.x+=1.0){float next=depth_sample(vec2(column_at(at.x+2.0),row_at(0.0)));at.depths=vec2(at.depths.y,next);at.a=at.b;at.b=at.x+2.0-origin+law.y*next;}float stretch=at.b-at.a;float t=-at.a/stretch;surface=Surface(at.x+t,mix(at.depths.x,at.depths.y,t),false);vec4 seen=color_sample(vec2(column_at(surface.source),row_at(0.0)));float middle=0.5*float(source_size.x-1);bool done=at.a<=0.0&&at.b>0.0&&stretch<MAX_STRETCH&&abs(surface.source-middle)<=middle;if(!done){seen=march(at,end,origin,source_row(),surface);}return seen;}
-void main(){uvec4 span=pixel_span();Surface surface;if(span.y!=0u){color=sample_planar(uintBitsToFloat(span.xyz),surface);}else{color=searched(span.x,surface);}gl_FragDepth=surface.depth;}`;
+int En(){return int(clamp(gl_FragCoord.y-first_row,0.0,float(source_size.y-1)));}
+const float Di=2.0;
+vec4 Ei(vec3 Al,out Ak D){float F=Al.x+Al.y*gl_FragCoord.x+Al.z*gl_FragCoord.y;D.Ac=clamp((F-columns.y)/columns.x-0.5,0.0,float(source_size.x-1));D.P=(origins.x*gl_FragCoord.x+origins.y-D.Ac)/law.y;if(law.y==0.0){vec2 G=Ck(floor(D.Ac));D.P=mix(G.x,G.y,fract(D.Ac));}D.Bt=false;vec2 at=vec2(F,Ag(0.0));return Av(at);}
+vec4 Ek(uint span,out Ak D){float origin=origins.x*gl_FragCoord.x+origins.y;At at=Bx(floor(origin-farthest-uintBitsToFloat(span)),origin);float U=min(max(at.x,0.0)+Eo(span),float(source_size.x-1));float Dv=min(at.x+Di,U);for(;at.x<Dv&&at.b<=0.0&&max(at.b,-1.0)>=at.a;at.x+=1.0){float Cv=Ae(vec2(Aw(at.x+2.0),Ag(0.0)));at.G=vec2(at.G.y,Cv);at.a=at.b;at.b=at.x+2.0-origin+law.y*Cv;}float Dd=at.b-at.a;float t=-at.a/Dd;D=Ak(at.x+t,mix(at.G.x,at.G.y,t),false);vec4 Da=Av(vec2(Aw(D.Ac),Ag(0.0)));float V=0.5*float(source_size.x-1);bool Ds=at.a<=0.0&&at.b>0.0&&Dd<Bn&&abs(D.Ac-V)<=V;if(!Ds){Da=Dx(at,U,origin,En(),D);}return Da;}
+void main(){uvec4 span=Eb();Ak D;if(span.y!=0u){color=Ei(uintBitsToFloat(span.xyz),D);}else{color=Ek(span.x,D);}gl_FragDepth=D.P;}`;
 export const nearFraction = /* glsl */`${precisions}
 uniform highp sampler2D depth_map;
-float depth_of(ivec2 p){return texelFetch(depth_map,p,0).x;}
+float Dq(ivec2 p){return texelFetch(depth_map,p,0).x;}
 uniform ivec2 origin;
 uniform ivec2 size;
 uniform float near_depth;
 uniform bool reversed;
 layout(location=0)out vec4 fraction;
-const int GRID=16;
-const int SAMPLES=8;
-void main(){ivec2 cell=ivec2(gl_FragCoord.xy)*SAMPLES;float count=0.0;for(int j=0;j<SAMPLES;++j){for(int i=0;i<SAMPLES;++i){ivec2 pixel=origin+((cell+ivec2(i,j))*2+1)*size/(2*GRID*SAMPLES);float depth=depth_of(pixel);count+=(reversed?depth>near_depth:depth<near_depth)?1.0:0.0;}}fraction=vec4(count/float(SAMPLES*SAMPLES));}`;
+const int Dj=16;
+const int Ai=8;
+void main(){ivec2 Dp=ivec2(gl_FragCoord.xy)*Ai;float Ci=0.0;for(int j=0;j<Ai;++j){for(int i=0;i<Ai;++i){ivec2 J=origin+((Dp+ivec2(i,j))*2+1)*size/(2*Dj*Ai);float P=Dq(J);Ci+=(reversed?P>near_depth:P<near_depth)?1.0:0.0;}}fraction=vec4(Ci/float(Ai*Ai));}`;

@@ -11,13 +11,11 @@ const TILE = [16, 8];
 const roundedUp = (pixels) => Math.max(Math.ceil(pixels - 1e-3), 0);
 
 /**
- * The tangents of the angles to an image's edges.
+ * The tangents of the angles to an image's edges: the left and the right one, the lower and the upper one.
  *
  * @param {import('three').Matrix4} projection
  */
-const tangents = ({ elements: e }) => ({
-  left: (e[8] - 1) / e[0], right: (e[8] + 1) / e[0], down: (e[9] - 1) / e[5], up: (e[9] + 1) / e[5],
-});
+export const tangents = ({ elements: e }) => [0, 1].map((i) => [-1, 1].map((side) => (e[8 + i] + side) / e[5 * i]));
 
 /**
  * Computes what to render, and the uniforms; or says in a sentence why the other eye cannot be synthesized.
@@ -46,29 +44,29 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
   const own = source.viewport;
   if (!(width > 0 && height > 0 && own.z === width && own.w === height)) return 'the eyes’ images differ in size';
 
-  const s = tangents(source.projectionMatrix), t = tangents(target.projectionMatrix);
-  const dx = (s.right - s.left) / width, dy = (s.up - s.down) / height;
-  const row = (s.down - t.down) / dy;
-  const fits = Math.abs((t.right - t.left) / dx - width) <= 0.05 && Math.abs((t.up - t.down) / dy - height) <= 0.05
+  const [[sLeft, sRight], [sDown, sUp]] = tangents(source.projectionMatrix), [[tLeft, tRight], [tDown, tUp]] = tangents(target.projectionMatrix);
+  const dx = (sRight - sLeft) / width, dy = (sUp - sDown) / height;
+  const row = (sDown - tDown) / dy;
+  const fits = Math.abs((tRight - tLeft) / dx - width) <= 0.05 && Math.abs((tUp - tDown) / dy - height) <= 0.05
     && Math.abs(row - Math.round(row)) <= 0.05;
   if (!fits) return 'the eyes’ fields of view differ in size, or by a part of a pixel’s row';
 
   // The source: the rendered eye, grown by whole pixels to the union of both frusta and by the guard band, which lies
   // on the side that the other eye sees more of.
   const guard = guardBand > 0 ? roundedUp(ipd / dx / guardBand) : 0;
-  const left = roundedUp((s.left - t.left) / dx) + (toLeft ? guard : 0);
-  const right = roundedUp((t.right - s.right) / dx) + (toLeft ? 0 : guard);
-  const below = roundedUp((s.down - t.down) / dy), above = roundedUp((t.up - s.up) / dy);
+  const left = roundedUp((sLeft - tLeft) / dx) + (toLeft ? guard : 0);
+  const right = roundedUp((tRight - sRight) / dx) + (toLeft ? 0 : guard);
+  const below = roundedUp((sDown - tDown) / dy), above = roundedUp((tUp - sUp) / dy);
   const size = [width + left + right, height + below + above];
   if (Math.max(...size) > largest) return `the rendered eye would be larger than this GPU’s largest image (${largest} pixels)`;
-  const frustum = { left: s.left - left * dx, right: s.right + right * dx, down: s.down - below * dy, up: s.up + above * dy };
+  const frustum = [[sLeft - left * dx, sRight + right * dx], [sDown - below * dy, sUp + above * dy]];
 
   // 1 / distance = constant + slope * depth, read from the projection: three's near and far may be a frame ahead of it.
   const slope = (zeroToOne ? 1 : 2) / e[14];
   const constant = (zeroToOne ? e[10] : e[10] - 1) / e[14];
   // x_other = x + offset + scale * depth.
   const shift = (toLeft ? 1 : -1) * ipd / dx;
-  let offset = (frustum.left - t.left) / dx + shift * constant;
+  let offset = (frustum[0][0] - tLeft) / dx + shift * constant;
   let scale = shift * slope;
   // Shaders count columns in the direction in which nearer surfaces lie farther along: from the right for a right eye.
   if (!toLeft) [offset, scale] = [width - size[0] - offset, -scale];
@@ -78,13 +76,13 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
   }
 
   const maps = [[size[0], size[1]], [width, size[1]]].map((of) => of.map((n, i) => Math.ceil(n / TILE[i])));
-  const rowOffset = Math.round((frustum.down - t.down) / dy);
+  const rowOffset = Math.round((frustum[1][0] - tDown) / dy);
   const sense = toLeft ? 1 : -1;
   const first = toLeft ? -x - 0.5 : width + x - 0.5;
   const firstRow = y + rowOffset;
   const [across, up] = maps[1].map((n, i) => n * TILE[i]);
   return {
-    size, maps, frustum, constant, slope,
+    size, maps, frustum, constant, slope, whole: [width, height],
     uniforms: {
       source_size: size,
       target_size: [width, height],
@@ -108,13 +106,15 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
 }
 
 /**
- * Writes a frustum into a projection matrix, of which everything else stays.
+ * Writes a frustum into a projection matrix, of which everything else stays, and returns it.
  *
  * @param {import('three').Matrix4} matrix
  */
-export function project({ elements: e }, { left, right, down, up }) {
-  e[0] = 2 / (right - left);
-  e[5] = 2 / (up - down);
-  e[8] = (right + left) / (right - left);
-  e[9] = (up + down) / (up - down);
+export function project(matrix, frustum) {
+  const e = matrix.elements;
+  frustum.forEach(([low, high], i) => {
+    e[5 * i] = 2 / (high - low);
+    e[8 + i] = (high + low) / (high - low);
+  });
+  return matrix;
 }

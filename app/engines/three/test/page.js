@@ -5,6 +5,9 @@ import { StereoEffect } from 'three/addons/effects/StereoEffect.js';
 import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
 import { RenderPass } from 'three/addons/postprocessing/RenderPass.js';
 import { ShaderPass } from 'three/addons/postprocessing/ShaderPass.js';
+import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { StereoSynthesis } from 'yoro-three';
@@ -134,8 +137,10 @@ function views(cases) {
 }
 
 /** Compares a scene on a canvas with three's own `StereoEffect`. */
-async function compare({ scene: name, size = 256, options = {}, renderer: attributes = {}, tweak, picture = false, effect = true, frames = Number(THREE.REVISION) > 170 ? 1 : 8 }) {
+async function compare({ scene: name, size = 256, pixelRatio = 1, options = {}, renderer: attributes = {}, tweak, picture = false, effect = true, frames = Number(THREE.REVISION) > 170 ? 1 : 8 }) {
   const renderer = rendererOf(2 * size, size, attributes);
+  renderer.setPixelRatio(pixelRatio);
+  renderer.setSize(2 * size / pixelRatio, size / pixelRatio, false);
   const { scene, camera } = typeof name === 'string' ? await build(name, renderer) : name;
   tweak?.(scene, camera);
   const stereo = new StereoSynthesis(renderer, { mode: 'synthesized', ...options });
@@ -202,7 +207,9 @@ async function session({ scene: name, options = {}, renderer: attributes = {}, t
   const [truth, ours] = [await Promise.all(shots.rendered), await Promise.all(shots.synthesized)];
   const rendered = options.dominantEye === 'left' ? 0 : 1;
   const layer = xr.getBaseLayer().constructor.name;
-  const result = { scene: name, layer, ...likeness(ours, truth, rendered), calls: calls.synthesized, callsOwn: calls.rendered, trouble: stereo.trouble, way: stereo.way, states: states.size, error: renderer.getContext().getError(), skew: round(cameras[1].projectionMatrix.elements[8]) };
+  const gaze = new THREE.Vector3(0, 0, -1).transformDirection(cameras[0].matrixWorld);
+  const result = { scene: name, layer, foveation: xr.getFoveation(), ...likeness(ours, truth, rendered), calls: calls.synthesized, callsOwn: calls.rendered, trouble: stereo.trouble, way: stereo.way, states: states.size, error: renderer.getContext().getError(), skew: round(cameras[1].projectionMatrix.elements[8]) };
+  if (ours[0].width === ours[0].height) result.centre = psnrOf(ours[1 - rendered], truth[1 - rendered], around(cameras[1 - rendered], 20, gaze, ours[0].width), true);
   if (picture) result.png = png([...ours, ...truth, difference(ours[1 - rendered], truth[1 - rendered])]);
   await current.end();
   // Afterwards, the canvas shows both eyes again.
@@ -250,12 +257,185 @@ async function controllers(renderer) {
   return { scene, camera: new THREE.PerspectiveCamera(50, 2, 0.05, 100) };
 }
 
+/** Wide lines, whose material asks the renderer for its viewport, on a canvas of more pixels than it counts. */
+async function lines({ deep = false, ...more } = {}) {
+  const scene = new THREE.Scene();
+  scene.background = new THREE.Color(0x8899aa);
+  const geometry = new LineSegmentsGeometry();
+  const points = [];
+  for (let i = 0; i < 40; i++) {
+    const a = 2.4 * i, z = -1 - 0.1 * i;
+    points.push(Math.cos(a) * 1.2, 1.6 + Math.sin(a), z, Math.cos(a + 2) * 1.2, 1.6 + Math.sin(a + 2), z - 0.4);
+  }
+  geometry.setPositions(points);
+  const material = new LineMaterial({ color: 0xcc2200, linewidth: 4, dashed: false });
+  const wide = new LineSegments2(geometry, material);
+  if (deep) {
+    // As code that asks while it is drawn for the pixels of a canvas.
+    const size = new THREE.Vector2();
+    wide.onBeforeRender = (renderer) => material.resolution.copy(renderer.getDrawingBufferSize(size));
+  }
+  wide.frustumCulled = false;
+  scene.add(wide);
+  const camera = new THREE.PerspectiveCamera(70, 2, 0.1, 50);
+  camera.position.set(0, 1.6, 0.5);
+  return compare({ scene: { scene, camera }, renderer: { antialias: true }, pixelRatio: 2, ...more });
+}
+
+/** Squares of many colours, moved to the right by some pixels. */
+function squares(shift) {
+  const canvas = document.createElement('canvas');
+  [canvas.width, canvas.height] = [256, 128];
+  const pen = canvas.getContext('2d');
+  pen.fillStyle = '#cde';
+  pen.fillRect(0, 0, 256, 128);
+  for (let i = 0; i < 16; i++) {
+    for (let k = 0; k < 8; k++) {
+      pen.fillStyle = `hsl(${i * 22} 60% ${60 + 5 * (k % 4)}%)`;
+      pen.fillRect(i * 16 + shift, k * 16, 14, 14);
+    }
+  }
+  const map = new THREE.CanvasTexture(canvas);
+  map.colorSpace = THREE.SRGBColorSpace;
+  return map;
+}
+
+/** Spheres around everything, and boxes in front of things, for the left eye alone and for the right one alone. */
+function addPanorama(scene) {
+  for (const eye of [1, 2]) {
+    const sphere = new THREE.Mesh(new THREE.SphereGeometry(15, 40, 20).scale(-1, 1, 1), new THREE.MeshBasicMaterial({ map: squares(3 * eye) }));
+    sphere.position.y = 1.6;
+    const box = new THREE.Mesh(new THREE.BoxGeometry(0.3, 0.3, 0.3), new THREE.MeshNormalMaterial());
+    box.position.set(eye * 0.4 - 0.6, 2, 1.2);
+    for (const each of [sphere, box]) {
+      each.layers.set(eye);
+      scene.add(each);
+    }
+  }
+}
+
+/** What lies behind everything and differs between the eyes: a panorama for each, and a picture that fills the view. */
+async function behind() {
+  const attributes = { antialias: true };
+  const look = (name, tweak, more) => compare({ scene: name, renderer: attributes, tweak, ...more });
+  const filled = (scene) => { scene.background = squares(0); };
+  return {
+    panorama: await look('cubes', (scene) => {
+      scene.background = new THREE.Color(0xff0000);
+      addPanorama(scene);
+    }, { effect: false }),
+    // Linear colour until the last pass.
+    half: await look('street', addPanorama, { effect: false, renderer: { antialias: true, isHalf: true } }),
+    filled: await look('cubes', filled),
+  };
+}
+
+/** A picture enlarged between the middles of its pixels. */
+function enlarged(image, size) {
+  const { width, height, data } = image;
+  const out = new ImageData(size, size);
+  const along = (i, n) => {
+    const at = Math.max(0, Math.min(n - 1, (i + 0.5) * n / size - 0.5)), low = Math.min(Math.floor(at), n - 2);
+    return [low, at - low];
+  };
+  for (let row = 0; row < size; row++) {
+    const [y, v] = along(row, height);
+    for (let column = 0; column < size; column++) {
+      const [x, u] = along(column, width);
+      for (let c = 0; c < 4; c++) {
+        const at = (i, k) => data[4 * ((y + k) * width + x + i) + c];
+        out.data[4 * (row * size + column) + c] = (1 - v) * ((1 - u) * at(0, 0) + u * at(1, 0)) + v * ((1 - u) * at(0, 1) + u * at(1, 1));
+      }
+    }
+  }
+  return out;
+}
+
+/** The rectangle of an eye's picture within an angle of a direction: columns, and rows from the top. */
+function around(eye, degrees, gaze, size) {
+  const e = eye.projectionMatrix.elements;
+  const { x, y, z } = gaze.clone().transformDirection(eye.matrixWorldInverse);
+  const reach = Math.tan(degrees * Math.PI / 180);
+  const pixel = (tangent, scale, offset) => (scale * tangent - offset + 1) / 2 * size;
+  const [left, right] = [-reach, reach].map((more) => pixel(x / -z + more, e[0], e[8]));
+  const [down, up] = [-reach, reach].map((more) => pixel(y / -z + more, e[5], e[9]));
+  return { left, right, top: size - up, bottom: size - down };
+}
+
+/** PSNR of the pixels inside a rectangle, or outside; `margin` pixels beside its border do not count. */
+function psnrOf(a, b, { left, right, top, bottom }, isInside, margin = 3) {
+  const pick = ({ data, width, height }) => {
+    const kept = [];
+    for (let row = 0; row < height; row++) {
+      for (let column = 0; column < width; column++) {
+        const within = Math.min(column - left, right - column, row - top, bottom - row);
+        if (isInside ? within > margin : within < -margin) kept.push(...data.subarray(4 * (row * width + column), 4 * (row * width + column) + 4));
+      }
+    }
+    return { data: kept };
+  };
+  return round(psnr(pick(a), pick(b)));
+}
+
+/** A foveated picture: the fovea beside the one without levels, the periphery beside two renders of the same levels. The
+ * gaze turns by degrees to the right and up. */
+async function levels({ scene: name, foveation = 'medium', size = 256, gazes = [[0, 0]], options = {}, attributes = { antialias: true }, picture = false, tweak }) {
+  const [degrees, density] = { low: [30, 1 / 2], medium: [20, 1 / 2], high: [20, 1 / 3] }[foveation];
+  const renderer = rendererOf(2 * size, size, attributes);
+  const { scene, camera } = build(name, renderer);
+  tweak?.(scene, camera);
+  const { truth, calls: callsOwn } = await drawn(renderer, () => new StereoEffect(renderer).render(scene, camera));
+  const coarseSize = Math.ceil(size * density);
+  renderer.setSize(2 * coarseSize, coarseSize, false);
+  const coarse = (await drawn(renderer, () => new StereoEffect(renderer).render(scene, camera))).truth.map((image) => enlarged(image, size));
+  renderer.setSize(2 * size, size, false);
+  const stereo = new StereoSynthesis(renderer, { mode: 'synthesized', ...options });
+  const rendered = stereo.dominantEye === 'left' ? 0 : 1, other = 1 - rendered;
+  stereo.render(scene, camera);
+  stereo.render(scene, camera);
+  const full = await halves(renderer), callsFull = renderer.info.render.calls;
+  stereo.foveation = foveation;
+  // Draw calls of both sources, without what is drawn for each eye.
+  const { render } = renderer;
+  let sources = 0;
+  renderer.render = (what, eye) => {
+    const before = renderer.info.render.calls;
+    render.call(renderer, what, eye);
+    if (what === scene && !eye.isArrayCamera) sources += renderer.info.render.calls - before;
+  };
+  const results = [];
+  for (const [right, up] of gazes) {
+    const turn = new THREE.Euler(up * Math.PI / 180, -right * Math.PI / 180, 0, 'YXZ');
+    const gaze = new THREE.Vector3(0, 0, -1).applyEuler(turn).transformDirection(camera.matrixWorld);
+    stereo.gaze = right === 0 && up === 0 ? null : gaze;
+    sources = 0;
+    stereo.render(scene, camera);
+    const { calls } = renderer.info.render;
+    const ours = await halves(renderer);
+    const [fovea, ownFovea] = [other, rendered].map((eye) => around(stereo.eyes(camera).cameras[eye], degrees, gaze, size));
+    const result = {
+      scene: name, way: stereo.way, trouble: stereo.trouble, calls, sources, callsFull, callsOwn,
+      fovea: psnrOf(ours[other], truth[other], fovea, true), foveaFull: psnrOf(full[other], truth[other], fovea, true),
+      ownFovea: psnrOf(ours[rendered], full[rendered], ownFovea, true),
+      periphery: psnrOf(ours[other], coarse[other], fovea, false), ownPeriphery: psnrOf(ours[rendered], coarse[rendered], ownFovea, false),
+      peripheryFull: psnrOf(full[other], truth[other], fovea, false), same: psnrOf(coarse[rendered], coarse[other], fovea, false),
+      memory: JSON.stringify([renderer.info.memory, renderer.info.programs.length]), error: renderer.getContext().getError(),
+    };
+    if (picture) result.png = png([...ours, truth[other], coarse[other]]);
+    results.push(result);
+  }
+  renderer.render = render;
+  stereo.dispose();
+  return results;
+}
+
 /** Why three's own stereo is shown, and whether it is shown. */
 async function fallbacks() {
   const results = {};
-  const look = async (name, attributes, change) => {
+  const look = async (name, attributes, change, of = 'cubes', prepare = () => {}) => {
     const renderer = rendererOf(128, 64, attributes);
-    const { scene, camera } = build('cubes', renderer);
+    const { scene, camera } = build(of, renderer);
+    prepare(scene);
     const stereo = new StereoSynthesis(renderer, { mode: 'synthesized' });
     const { truth } = await truthOf(renderer, scene, camera, stereo);
     const undo = change?.({ renderer, camera, stereo });
@@ -273,6 +453,7 @@ async function fallbacks() {
       renderer.autoClear = true;
     };
   });
+  await look('transmission', {}, null, 'transmission', addPanorama);
   const renderer = rendererOf(128, 64, {});
   const { scene } = build('cubes', renderer);
   const stereo = new StereoSynthesis(renderer, { mode: 'synthesized' });
@@ -297,11 +478,18 @@ async function state() {
   const memory = () => ({ ...renderer.info.memory, programs: renderer.info.programs.length });
   renderer.render(scene, camera);
   const settings = () => JSON.stringify([
-    renderer.getRenderTarget(), renderer.autoClear, renderer.xr.enabled, renderer.info.autoReset, renderer.shadowMap.autoUpdate,
+    renderer.getRenderTarget()?.texture.uuid, renderer.getActiveCubeFace(), renderer.autoClear, renderer.xr.enabled, renderer.info.autoReset, renderer.shadowMap.autoUpdate,
     renderer.toneMapping, renderer.outputColorSpace, scene.background, scene.children.length, scene.matrixWorldAutoUpdate,
     camera.layers.mask, camera.projectionMatrix.elements, renderer.getViewport(new THREE.Vector4()).toArray(),
+    renderer.getCurrentViewport(new THREE.Vector4()).toArray(), renderer.getSize(new THREE.Vector2()).toArray(),
   ]);
   const before = settings(), own = await halves(renderer);
+  // Materials have programs of their own for targets.
+  const target = new THREE.WebGLCubeRenderTarget(128);
+  renderer.setRenderTarget(target, 3);
+  renderer.render(scene, camera);
+  renderer.setRenderTarget(null);
+  target.dispose();
   const begin = memory();
   const stereo = new StereoSynthesis(renderer, { samples: 4 });
   const frames = async (count) => {
@@ -318,12 +506,46 @@ async function state() {
   const larger = renderer.info.render.frame > 0 && stereo.way;
   renderer.setSize(128, 64, false);
   const back = await frames(2);
-  const isSame = settings() === before;
+  // On every way out: drawn by three itself, with an error, into a target with a viewport of its own.
+  const differing = [];
+  const same = (name, was) => {
+    if (settings() !== was) differing.push(`${name}: ${settings()}, not ${was}`);
+  };
+  same('frames', before);
+  for (const mode of ['rendered', 'synthesized']) {
+    stereo.mode = mode;
+    stereo.render(scene, camera);
+    same(mode, before);
+    const thrower = new THREE.Mesh(new THREE.BoxGeometry(), new THREE.MeshBasicMaterial());
+    thrower.frustumCulled = false;
+    thrower.onBeforeRender = () => { throw new Error('of the user'); };
+    scene.add(thrower);
+    const full = settings();
+    let thrown = '';
+    try {
+      stereo.render(scene, camera);
+    } catch ({ message }) {
+      thrown = message;
+    }
+    if (thrown !== 'of the user') differing.push(`no error: ${thrown}`);
+    same(`${mode}, error`, full);
+    scene.remove(thrower);
+    thrower.geometry.dispose();
+    thrower.material.dispose();
+    renderer.setRenderTarget(target, 3);
+    renderer.setViewport(0, 0, 100, 60);
+    const inTarget = settings();
+    stereo.render(scene, camera);
+    same(`${mode}, target`, inTarget);
+    renderer.setRenderTarget(null);
+    renderer.setViewport(0, 0, 128, 64);
+    target.dispose();
+  }
   stereo.dispose();
   const end = memory();
   renderer.render(scene, camera);
   const again = await halves(renderer);
-  return { isSame, picture: psnr(own[0], again[0]), begin, few, many, larger, back, end, error: renderer.getContext().getError() };
+  return { differing, picture: psnr(own[0], again[0]), begin, few, many, larger, back, end, error: renderer.getContext().getError() };
 }
 
 /** The picture after the context was lost and restored. */
@@ -491,5 +713,5 @@ async function special() {
   return results;
 }
 
-globalThis.check = { controllers, fallbacks, state, lost, near, composed, choose, quiet, special, views, compare, scenes, session, THREE, StereoSynthesis, rendererOf, build, halves, png, psnr, names };
+globalThis.check = { behind, levels, controllers, lines, fallbacks, state, lost, near, composed, choose, quiet, special, views, compare, scenes, session, THREE, StereoSynthesis, rendererOf, build, halves, png, psnr, names };
 globalThis.ready = true;

@@ -1,12 +1,14 @@
 // What a user's TypeScript says. Only the compiler reads it.
 
-import { PerspectiveCamera, Scene, WebGLRenderer, type DepthTexture, type Texture } from 'three';
+import { PerspectiveCamera, Scene, Vector3, WebGLRenderer, type DepthTexture, type Texture } from 'three';
 import { StereoSynthesis, type Choice, type Way } from 'yoro-three';
 
 const renderer = new WebGLRenderer();
 const stereo = new StereoSynthesis(renderer, { mode: 'auto', dominantEye: 'left', samples: 4 });
 const scene = new Scene(), camera = new PerspectiveCamera();
 stereo.bothEyes = 1 << 5;
+stereo.foveation = 'medium';
+stereo.gaze = new Vector3(0, 0, -1);
 stereo.stereoCamera.eyeSep = 0.06;
 renderer.setAnimationLoop(() => stereo.render(scene, camera));
 const way: Way | null = stereo.way;

@@ -5,6 +5,7 @@ use wgpu::{
     TextureSampleType, TextureUsages, TextureView,
 };
 use yoro::synthesis::backend::{check_rectangle, check_size};
+use yoro::synthesis::{HoleMark, Holes};
 
 use crate::{Options, Source, Target, WgpuError};
 
@@ -43,7 +44,20 @@ impl Checks {
             }
             checks.format(format, role, drawn)?;
         }
+        checks.holes()?;
         Ok(checks)
+    }
+
+    /// Checks that open holes can be marked.
+    fn holes(&self) -> Result<(), WgpuError> {
+        let refuse = |what| Err(WgpuError::Holes(what));
+        match (self.options.holes, self.options.depth_format) {
+            (Holes::Open(_), None) => refuse("there is no depth for the mark; give a depth format"),
+            (Holes::Open(HoleMark::Stencil), Some(format)) if !format.has_stencil_aspect() => {
+                refuse("the depth format has no stencil for the mark; choose Depth24PlusStencil8")
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Checks a format against what all devices with these features support. With adapter-specific features only the
@@ -76,6 +90,10 @@ impl Checks {
         self.target(target)?;
         check_rectangle("a source", source.origin, source_size, size(source.color))?;
         check_rectangle("a target", target.origin, target_size, size(target.color))?;
+        if self.options.holes.is_open() && target_size != size(target.color) {
+            let what = "the target is a part of its textures; give textures of the target's size";
+            return Err(WgpuError::Holes(what));
+        }
         Ok(())
     }
 

@@ -85,7 +85,7 @@ impl Composer {
     /// # Errors
     /// Those of [`Pipeline::new`](crate::Pipeline::new).
     pub fn new(device: &Device, color_format: TextureFormat) -> Result<Composer, WgpuError> {
-        let checks = Checks::new(device, &Options { color_format, depth_format: None })?;
+        let checks = Checks::new(device, &Options { color_format, ..Options::default() })?;
         made(device, || Composer {
             checks,
             pass: passes::compose(device, color_format),
@@ -131,7 +131,8 @@ impl Composer {
         let index = self.bound(device, &images);
         let ([x, y], [width, height]) = (target.origin, composition.size);
         let whole = size(target.color) == composition.size;
-        let drawn = Drawn { color: target.color, depth: None, area: [x, y, width, height], whole };
+        let drawn =
+            Drawn { color: target.color, depth: None, area: [x, y, width, height], whole, marks: None };
         self.pass.draw(encoder, &self.kept[index].group, uniforms, &drawn);
         Ok(())
     }

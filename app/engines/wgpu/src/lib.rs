@@ -44,7 +44,7 @@ mod uniforms;
 pub use wgpu;
 use wgpu::{TextureFormat, TextureUsages, TextureView};
 pub use yoro;
-use yoro::synthesis::ArgumentError;
+use yoro::synthesis::{ArgumentError, Holes};
 
 pub use composer::{Composer, InsetImage, LevelImage, LevelImages};
 pub use nearest::NearestDepth;
@@ -103,6 +103,9 @@ pub enum WgpuError {
         /// The number of samples of the texture.
         found: u32,
     },
+    /// The options or the target do not go with [`Options::holes`].
+    #[error("holes cannot be left open here: {0}")]
+    Holes(&'static str),
     /// A size or a rectangle does not fit the textures or the device.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
@@ -144,12 +147,16 @@ pub struct Options {
     pub color_format: TextureFormat,
     /// Format of the targets' depth, which is written in the source's encoding. `None` for colour only.
     pub depth_format: Option<TextureFormat>,
+    /// What becomes of holes, which only a [`Gather`] can leave open, in targets that are whole textures. Their depth is then
+    /// cleared to the farthest, and stencil to 0 if it is the mark. With [`HoleMark::Depth`](yoro::synthesis::HoleMark::Depth), depth is the
+    /// mark and nothing else.
+    pub holes: Holes,
 }
 
 impl Default for Options {
     /// Rgba8Unorm without depth.
     fn default() -> Options {
-        Options { color_format: TextureFormat::Rgba8Unorm, depth_format: None }
+        Options { color_format: TextureFormat::Rgba8Unorm, depth_format: None, holes: Holes::Filled }
     }
 }
 
@@ -183,7 +190,7 @@ impl<'a> Source<'a> {
 pub struct Target<'a> {
     /// Colour, in [`Options::color_format`].
     pub color: &'a TextureView,
-    /// Depth, in [`Options::depth_format`], with all of its aspects. Stencil is unchanged.
+    /// Depth, in [`Options::depth_format`], with all of its aspects. Stencil is unchanged, unless holes are left open.
     pub depth: Option<&'a TextureView>,
     /// Upper left corner of the rectangle to write in the textures, in pixels. Pixels outside it are unchanged.
     pub origin: [u32; 2],

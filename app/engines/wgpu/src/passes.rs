@@ -7,11 +7,13 @@ use wgpu::{
     CommandEncoder, CompareFunction, DepthStencilState, Device, FilterMode, FragmentState, LoadOp,
     Operations, PipelineLayoutDescriptor, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
     RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, Sampler, SamplerBindingType,
-    SamplerDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, StoreOp,
-    TextureFormat, TextureSampleType, TextureView, TextureViewDimension, VertexState,
+    SamplerDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, StencilFaceState,
+    StencilOperation, StencilState, StoreOp, TextureFormat, TextureSampleType, TextureView,
+    TextureViewDimension, VertexState,
 };
-use yoro::synthesis::LevelUniforms;
+use yoro::eyes::DepthConvention;
 use yoro::synthesis::backend::WarpKind;
+use yoro::synthesis::{HoleMark, Holes, LevelUniforms};
 
 use crate::buffers::{Buffers, MAP};
 use crate::shaders::{COMPOSE, SCREEN, Shaders};
@@ -52,7 +54,8 @@ pub(crate) struct Groups {
 }
 
 impl Passes {
-    pub(crate) fn new<W: WarpKind>(device: &Device, options: &Options) -> Passes {
+    /// Creates the passes, of which the last one runs the shader `march`.
+    pub(crate) fn new<W: WarpKind>(device: &Device, options: &Options, march: &'static str) -> Passes {
         let module = |label, text| module(device, label, text);
         let shaders = Shaders::of::<W>();
         let uniforms = uniforms::size::<W::Uniforms>();
@@ -60,20 +63,20 @@ impl Passes {
         let march_vertex = module("yoro march", shaders.march_vertex);
         let map = |label, text, bindings| {
             let pass = PassMaker { device, uniforms, label, bindings, filtered: &[] };
-            pass.make(&screen, &module(label, text), MAP, None)
+            pass.make(&screen, &module(label, text), MAP, None, StencilState::default())
         };
         let march_bindings: &[u32] = &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, NEAREST, LINEAR];
         let (label, bindings) = ("yoro march", march_bindings);
-        let march = PassMaker { device, uniforms, label, bindings, filtered: &[COLOR] };
-        let text = shaders.march(options.depth_format.is_some());
+        let maker = PassMaker { device, uniforms, label, bindings, filtered: &[COLOR] };
         Passes {
             tiles: map("yoro tiles", shaders.tiles, &[DEPTH, UNIFORMS, NEAREST]),
             spans: map("yoro spans", shaders.spans, &[TILE_MAP, UNIFORMS]),
-            march: march.make(
+            march: maker.make(
                 &march_vertex,
-                &module("yoro march", text),
+                &module("yoro march", march),
                 options.color_format,
                 options.depth_format,
+                stencil_state(options),
             ),
             nearest: sampler(device, "yoro nearest", FilterMode::Nearest),
             linear: sampler(device, "yoro linear", FilterMode::Linear),
@@ -129,7 +132,8 @@ pub(crate) fn compose(device: &Device, format: TextureFormat) -> Pass {
     let label = "yoro compose";
     let (uniforms, bindings) = (uniforms::size::<LevelUniforms>(), &[0, 1, 2, UNIFORMS, NEAREST, LINEAR]);
     let maker = PassMaker { device, uniforms, label, bindings, filtered: &[1, 2] };
-    maker.make(&module(device, "yoro screen", SCREEN), &module(device, label, COMPOSE), format, None)
+    let screen = module(device, "yoro screen", SCREEN);
+    maker.make(&screen, &module(device, label, COMPOSE), format, None, StencilState::default())
 }
 
 /// The place that the last pass draws to.
@@ -140,6 +144,47 @@ pub(crate) struct Drawn<'a> {
     pub(crate) area: [u32; 4],
     /// True if the area is the whole texture, so that nothing in it needs to be kept.
     pub(crate) whole: bool,
+    /// How written pixels are marked, if holes are left open.
+    pub(crate) marks: Option<Marks>,
+}
+
+/// How a pass marks the pixels that it writes.
+#[derive(Clone, Copy)]
+pub(crate) struct Marks {
+    mark: HoleMark,
+    /// Depths of the near plane and of the far plane.
+    planes: [f32; 2],
+}
+
+impl Marks {
+    /// Returns the marks of these options; `None` if holes are filled.
+    pub(crate) fn new(options: &Options, convention: DepthConvention) -> Option<Marks> {
+        match options.holes {
+            Holes::Filled => None,
+            Holes::Open(mark) => Some(Marks { mark, planes: convention.planes() }),
+        }
+    }
+
+    /// Returns the range of depth that the viewport maps to.
+    fn depths(self) -> [f32; 2] {
+        match self.mark {
+            HoleMark::Stencil => WHOLE_DEPTH,
+            HoleMark::Depth => [self.planes[0]; 2],
+        }
+    }
+}
+
+/// The viewport's depths, unless depth is a mark.
+const WHOLE_DEPTH: [f32; 2] = [0.0, 1.0];
+
+/// Returns the stencil state that writes the reference in each pixel, if stencil marks what is written.
+fn stencil_state(options: &Options) -> StencilState {
+    if options.holes != Holes::Open(HoleMark::Stencil) {
+        return StencilState::default();
+    }
+    let compare = CompareFunction::Always;
+    let face = StencilFaceState { compare, pass_op: StencilOperation::Replace, ..StencilFaceState::IGNORE };
+    StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff }
 }
 
 impl Passes {
@@ -155,12 +200,13 @@ impl Passes {
     ) {
         let all = |[width, height]: [u32; 2]| [0, 0, width, height];
         let tiles = color(&buffers.tiles, true);
-        self.tiles.record(encoder, &groups.tiles, uniforms, tiles, None, all(tile_size));
+        self.tiles.record(encoder, &groups.tiles, uniforms, tiles, None, (all(tile_size), WHOLE_DEPTH));
         let spans = color(&buffers.spans, true);
-        self.spans.record(encoder, &groups.spans, uniforms, spans, None, all(span_size));
+        self.spans.record(encoder, &groups.spans, uniforms, spans, None, (all(span_size), WHOLE_DEPTH));
         let target_color = color(target.color, target.whole);
-        let depth = target.depth.map(|view| depth(view, target.whole));
-        self.march.record(encoder, &groups.march, uniforms, target_color, depth, target.area);
+        let depth = target.depth.map(|view| depth(view, target.whole, target.marks));
+        let area = (target.area, target.marks.map_or(WHOLE_DEPTH, Marks::depths));
+        self.march.record(encoder, &groups.march, uniforms, target_color, depth, area);
     }
 }
 
@@ -171,14 +217,22 @@ fn color(view: &TextureView, overwritten: bool) -> RenderPassColorAttachment<'_>
     RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
-/// Returns a depth attachment. Its contents, except stencil, are discarded if it is overwritten.
-fn depth(view: &TextureView, overwritten: bool) -> RenderPassDepthStencilAttachment<'_> {
-    let load = if overwritten { LoadOp::Clear(0.0) } else { LoadOp::Load };
+/// Returns a depth attachment. Its contents, except stencil, are discarded if it is overwritten; stencil is cleared
+/// if it is a mark.
+fn depth(
+    view: &TextureView,
+    overwritten: bool,
+    marks: Option<Marks>,
+) -> RenderPassDepthStencilAttachment<'_> {
+    let farthest = marks.map_or(0.0, |marks| marks.planes[1]);
+    let load = if overwritten { LoadOp::Clear(farthest) } else { LoadOp::Load };
     let stencil = view.texture().format().has_stencil_aspect();
+    let is_mark = marks.is_some_and(|marks| marks.mark == HoleMark::Stencil);
+    let load_stencil = if is_mark { LoadOp::Clear(0) } else { LoadOp::Load };
     RenderPassDepthStencilAttachment {
         view,
         depth_ops: Some(Operations { load, store: StoreOp::Store }),
-        stencil_ops: stencil.then_some(Operations { load: LoadOp::Load, store: StoreOp::Store }),
+        stencil_ops: stencil.then_some(Operations { load: load_stencil, store: StoreOp::Store }),
     }
 }
 
@@ -191,7 +245,8 @@ impl Pass {
         uniforms: u32,
         target: &Drawn,
     ) {
-        self.record(encoder, group, uniforms, color(target.color, target.whole), None, target.area);
+        let color = color(target.color, target.whole);
+        self.record(encoder, group, uniforms, color, None, (target.area, WHOLE_DEPTH));
     }
 
     fn record(
@@ -201,7 +256,7 @@ impl Pass {
         uniforms: u32,
         color: RenderPassColorAttachment,
         depth: Option<RenderPassDepthStencilAttachment>,
-        [x, y, width, height]: [u32; 4],
+        ([x, y, width, height], [near, far]): ([u32; 4], [f32; 2]),
     ) {
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some(self.label),
@@ -209,7 +264,9 @@ impl Pass {
             depth_stencil_attachment: depth,
             ..RenderPassDescriptor::default()
         });
-        pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
+        pass.set_viewport(x as f32, y as f32, width as f32, height as f32, near, far);
+        // The mark, where stencil marks what is written.
+        pass.set_stencil_reference(1);
         pass.set_scissor_rect(x, y, width, height);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, group, &[uniforms]);
@@ -235,6 +292,7 @@ impl PassMaker<'_> {
         fragment: &ShaderModule,
         format: TextureFormat,
         depth_format: Option<TextureFormat>,
+        stencil: StencilState,
     ) -> Pass {
         let PassMaker { device, label, bindings, .. } = *self;
         let entries: Vec<_> = bindings.iter().map(|&binding| self.layout_entry(binding)).collect();
@@ -259,7 +317,7 @@ impl PassMaker<'_> {
                 format,
                 depth_write_enabled: Some(true),
                 depth_compare: Some(CompareFunction::Always),
-                stencil: Default::default(),
+                stencil,
                 bias: Default::default(),
             }),
             multisample: Default::default(),

@@ -6,7 +6,8 @@ use yoro::synthesis::backend::{Places, WarpKind, map_sizes};
 
 use crate::buffers::Buffers;
 use crate::checks::{Checks, made, size};
-use crate::passes::{Drawn, Groups, Passes};
+use crate::passes::{Drawn, Groups, Marks, Passes};
+use crate::shaders::Shaders;
 use crate::uniforms::UniformRing;
 use crate::{Options, Source, Target, WgpuError};
 
@@ -52,12 +53,13 @@ impl<W: WarpKind> Pipeline<W> {
     /// Creates the pipelines, which do not depend on the textures.
     ///
     /// # Errors
-    /// [`WgpuError::Format`] if the device does not support the options, and [`WgpuError::Refused`] for any other error
+    /// [`WgpuError::Format`] if the device does not support the options, [`WgpuError::Holes`], and [`WgpuError::Refused`] for any other error
     /// of wgpu. In a browser such errors go to the device's handler of uncaptured errors instead.
     pub fn new(device: &Device, options: &Options) -> Result<Pipeline<W>, WgpuError> {
         let checks = Checks::new(device, options)?;
-        let (passes, uniforms) =
-            made(device, || (Passes::new::<W>(device, options), UniformRing::new(device, "yoro uniforms")))?;
+        let march = Shaders::of::<W>().march(options)?;
+        let make = || (Passes::new::<W>(device, options, march), UniformRing::new(device, "yoro uniforms"));
+        let (passes, uniforms) = made(device, make)?;
         Ok(Pipeline { checks, passes, uniforms, buffers: None, kept: Vec::new(), calls: 0 })
     }
 
@@ -119,6 +121,7 @@ impl<W: WarpKind> Pipeline<W> {
             depth: target.depth,
             area: [x, y, width, height],
             whole: size(target.color) == target_size,
+            marks: warp.open_depth().and_then(|convention| Marks::new(&self.checks.options, convention)),
         };
         let sizes = map_sizes::<W>([source_size, target_size]);
         self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, uniforms, &drawn);

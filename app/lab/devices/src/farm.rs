@@ -6,7 +6,6 @@
 //! therefore recognised by their content; the names of files only decide which files are read.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use yoro_files::{self as files, FileError};
@@ -66,15 +65,10 @@ pub fn command(apk: &str, scenarios: &[u32], devices: &[String]) -> String {
 ///
 /// If several files have lines of the same step, such as the log and the results, a file with the whole step is
 /// preferred, then the one with the most samples.
-///
-/// # Errors
-/// [`FarmError`].
 pub fn read(folder: &Path, out: &Path) -> Result<Vec<RunInfo>, FarmError> {
-    if !folder.is_dir() {
-        return Err(FileError::NotFolder { path: folder.into() }.into());
-    }
     let mut found: BTreeMap<(String, String), Step> = BTreeMap::new();
-    for path in logs(folder)? {
+    let is_log = |path: &Path| path.ends_with(LOGS[0]) || files::has_extension(path, &LOGS);
+    for path in files::find_wanted(folder, is_log)? {
         let bytes = files::read(&folder.join(&path))?;
         let device = device_name(folder, &path);
         for run in runs(&bytes) {
@@ -89,27 +83,6 @@ pub fn read(folder: &Path, out: &Path) -> Result<Vec<RunInfo>, FarmError> {
         return Err(FarmError::Nothing { folder: folder.into() });
     }
     found.into_iter().map(|((device, run), step)| Ok(step.write(&device, &run, out)?)).collect()
-}
-
-/// Returns the paths of logs and results, relative to the folder.
-fn logs(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
-    let mut found = Vec::new();
-    let mut waiting = vec![PathBuf::new()];
-    while let Some(relative) = waiting.pop() {
-        let here = folder.join(&relative);
-        let failed = |source| FileError::Read { path: here.clone(), source };
-        for entry in fs::read_dir(&here).map_err(failed)? {
-            let entry = entry.map_err(failed)?;
-            let (kind, path) = (entry.file_type().map_err(failed)?, relative.join(entry.file_name()));
-            if kind.is_dir() {
-                waiting.push(path);
-            } else if kind.is_file() && (entry.file_name() == LOGS[0] || files::has_extension(&path, &LOGS)) {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    Ok(found)
 }
 
 /// Returns the name of the device's folder: the first part of `path`, or the name of `folder` itself.
@@ -241,6 +214,8 @@ fn device_info(folder: &str, simulated: bool) -> DeviceInfo {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::capture;
     use crate::report::DeviceReport;

@@ -22,7 +22,6 @@
 //! This crate must never know how anything is rendered or measured.
 
 mod error;
-mod files;
 mod interval;
 mod page;
 pub mod palette;
@@ -35,9 +34,8 @@ mod table;
 pub mod text;
 
 pub use error::ReportError;
-pub use files::ReportFiles;
 pub use interval::{Basis, BlockInterval, CONFIDENCE, Interval, Sample, mean_of_blocks};
 pub use pictures::{OtherEye, Picture, Pictures};
 pub use plot::{Axis, Entry, Plot, PlotError};
-pub use report::{Block, Report, Section, Text, Tone};
+pub use report::{Block, Report, ReportFiles, Section, Text, Tone};
 pub use table::{Cell, Kind, Table};

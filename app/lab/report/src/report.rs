@@ -1,10 +1,10 @@
 //! A report: sections of text, tables, plots and pictures, as a page and as Markdown.
 
-use std::fmt::Write as _;
-use std::path::Path;
+use std::fmt::{self, Write as _};
+use std::path::{Path, PathBuf};
 
 use crate::text::slug;
-use crate::{Pictures, Plot, ReportError, ReportFiles, Table, page};
+use crate::{Pictures, Plot, ReportError, Table, page};
 
 /// A report. It is written as one page that loads nothing from elsewhere, and as Markdown without plots and pictures.
 #[derive(Clone, Debug, Default)]
@@ -190,8 +190,34 @@ impl Report {
     /// # Errors
     /// [`ReportError`]. All files are made before the first one is written.
     pub fn write(&self, folder: &Path, name: &str, json: Option<&str>) -> Result<ReportFiles, ReportError> {
-        let files = ReportFiles::of(folder, name, json.is_some());
-        files.write(&self.to_html()?, &self.to_markdown(), json)?;
-        Ok(files)
+        let (html, markdown) = (self.to_html()?, self.to_markdown());
+        let write = |ending: &str, text: &str| {
+            let path = folder.join(format!("{name}.{ending}"));
+            yoro_files::write(&path, text.as_bytes()).map(|()| path)
+        };
+        // The page comes last, since it is what people open.
+        let json = json.map(|json| write("json", json)).transpose()?;
+        let markdown = write("md", &markdown)?;
+        Ok(ReportFiles { page: write("html", &html)?, markdown, json })
+    }
+}
+
+/// The files of a report.
+#[derive(Debug)]
+pub struct ReportFiles {
+    /// The HTML page.
+    pub page: PathBuf,
+    /// Texts and tables as Markdown.
+    pub markdown: PathBuf,
+    /// All figures as JSON, for a report that is not made from such a file.
+    pub json: Option<PathBuf>,
+}
+
+impl fmt::Display for ReportFiles {
+    /// Writes a line for each file: what it is, and its path.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (page, markdown) = (self.page.display(), self.markdown.display());
+        writeln!(f, "page:   {page}\ntables: {markdown}")?;
+        self.json.iter().try_for_each(|json| writeln!(f, "json:   {}", json.display()))
     }
 }

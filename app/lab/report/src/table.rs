@@ -120,11 +120,6 @@ impl Table {
         self.lines.push(Line { cells, first });
     }
 
-    /// Appends a column of numbers, without cells.
-    pub fn push_column(&mut self, name: &str) {
-        self.columns.push(Column { name: name.into(), left: false });
-    }
-
     /// Appends a row whose figures are replaced by the reason for their absence.
     pub fn push_reason(&mut self, mut cells: Vec<Cell>, reason: &str) {
         let span = self.columns.len().saturating_sub(cells.len()).max(1);

@@ -117,6 +117,12 @@ pub fn parse_finite(text: &str) -> Result<f32, String> {
     }
 }
 
+/// Parses an angle of a turn in degrees.
+pub fn parse_degrees(text: &str) -> Result<f32, String> {
+    let degrees = text.parse::<f32>().ok().filter(|degrees| degrees.abs() <= 360.0);
+    degrees.ok_or_else(|| "give degrees from -360 to 360".into())
+}
+
 /// Parses a finite number above zero.
 pub fn parse_positive(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {

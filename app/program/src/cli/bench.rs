@@ -1,9 +1,10 @@
 //! `yoro bench`: the experiments of the paper.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use anyhow::{bail, ensure};
+use anyhow::{Context as _, bail, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
 use crate::cli::Subcommand;
@@ -17,11 +18,12 @@ use yoro_assets::load::sidecar_file;
 use yoro_bench::bench::record::{Header, PassClock, VERSION};
 use yoro_bench::bench::{
     self, Bounds, Choices, Contender, EXPERIMENTS, Experiment, Inputs, Job, LazyObject, Object, Runner,
-    Writer, process,
+    Source, Writer, check_path, process,
 };
 use yoro_bench::inpaint::PatcherOptions;
 use yoro_files::interrupt::Interrupted;
 use yoro_gl::Context;
+use yoro_scenes::BUILTINS;
 use yoro_settings::Ipd;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
@@ -105,6 +107,9 @@ impl Subcommand for BenchArgs {
         let object = self.object.as_deref().map(Object::load).transpose()?;
         let object = LazyObject::new(Box::new(|| object.unwrap_or_else(Object::hare)));
         let jobs = jobs(self, &choices, &object)?;
+        if path.is_none() {
+            check_paths(&jobs, choices.seed)?;
+        }
         let out = self.out();
         let headless = self.gl.open()?;
         let gl = headless.gl();
@@ -197,6 +202,22 @@ fn warn_without_camera(scene: &Path) {
             scene.display()
         );
     }
+}
+
+/// Refuses files without a camera path where the head moves along it, before any other scene is measured.
+fn check_paths(jobs: &[Job], seed: u64) -> anyhow::Result<()> {
+    let mut checked = HashSet::new();
+    for job in jobs.iter().filter(|job| job.experiment.moves(job)) {
+        if let Source::Named(name) = &job.source
+            && BUILTINS.iter().all(|builtin| builtin.name != name)
+            && checked.insert(name)
+        {
+            let scene = yoro_scenes::load(name, seed, None)?;
+            check_path(&scene.name, &scene.viewpoints)
+                .with_context(|| format!("cannot measure {}", job.conditions))?;
+        }
+    }
+    Ok(())
 }
 
 /// Returns the settings of all suites, each once.

@@ -271,9 +271,7 @@ fn run_program(library: &Path, program: &[OsString]) -> anyhow::Result<()> {
         .env("XR_API_LAYER_PATH", join(folder.path().into(), "XR_API_LAYER_PATH"))
         .env("XR_ENABLE_API_LAYERS", join(NAME.into(), "XR_ENABLE_API_LAYERS"))
         .status()
-        .with_context(|| {
-            format!("{} cannot be started; give a program's name or path", program[0].display())
-        })?;
+        .with_context(|| format!("cannot start {}", program[0].display()))?;
     drop(folder);
     match status.code().or(status.signal().map(|signal| 128 + signal)) {
         Some(0) => Ok(()),

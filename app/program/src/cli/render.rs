@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Instant;
 
+use anyhow::bail;
 use glam::Vec3;
 use image::RgbImage;
 use serde::Serialize;
@@ -110,7 +111,7 @@ pub struct RenderArgs {
     frame_rate: u32,
     #[command(flatten)]
     encoding: EncodingArgs,
-    /// Print PSNR and SSIM of the synthesized eye
+    /// Print PSNR and SSIM of the synthesized eye against two full renders, which no --foveation changes
     #[arg(long)]
     measure: bool,
     /// Print JSON
@@ -190,7 +191,9 @@ impl Subcommand for RenderArgs {
         let mut reports = Vec::new();
         let bar = progress_bar(heads.len() as u64);
         for (i, &head) in heads.iter().enumerate() {
-            interrupt::check()?;
+            if interrupt::requested() {
+                bail!("interrupted: {i} of {} frames are in {}", heads.len(), self.out.display());
+            }
             let pair = self.eyes.pair(head);
             let start = Instant::now();
             prepared.set_time(self.time + i as f64 / f64::from(self.frame_rate))?;

@@ -4,14 +4,13 @@ use std::ffi::OsStr;
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
-use anyhow::bail;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
 use yoro::eyes::Foveation;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
-use yoro_settings::{FrameRate, Setting, Settings};
+use yoro_settings::{Setting, Settings};
 use yoro_viewer::stereo_options;
 
 /// A group of settings that a subcommand has options for.
@@ -28,6 +27,14 @@ pub struct Renderer;
 
 impl Group for Renderer {
     const KEYS: &'static [&'static str] = &["msaa"];
+}
+
+/// The settings of the renderer that `yoro xr` has options for.
+#[derive(Clone, Copy, Debug)]
+pub struct HeadsetRenderer;
+
+impl Group for HeadsetRenderer {
+    const KEYS: &'static [&'static str] = &["msaa", "foveation"];
 }
 
 /// The settings of the renderer of image groups: each pixel belongs to one surface by default.
@@ -52,8 +59,15 @@ impl Group for Synthesis {
 pub struct Stereo;
 
 impl Group for Stereo {
-    const KEYS: &'static [&'static str] =
-        &["pipeline", "imbuffer", "linear-interpolation", "strict", "guard-band", "near-field", "switch"];
+    const KEYS: &'static [&'static str] = &[
+        "pipeline",
+        "imbuffer",
+        "linear-interpolation",
+        "strict",
+        "guard-band",
+        "holes",
+        "switch",
+    ];
 }
 
 /// The settings of stereo frames whose pipelines are compared, each as its name says: none is switched to two renders.
@@ -61,8 +75,7 @@ impl Group for Stereo {
 pub struct Compared;
 
 impl Group for Compared {
-    const KEYS: &'static [&'static str] =
-        &["imbuffer", "linear-interpolation", "strict", "guard-band", "near-field"];
+    const KEYS: &'static [&'static str] = &["imbuffer", "linear-interpolation", "strict", "guard-band"];
 }
 
 impl SettingOptions<Compared> {
@@ -79,6 +92,7 @@ pub struct Lenses;
 
 impl Group for Lenses {
     const KEYS: &'static [&'static str] = &["viewer", "method", "foveation"];
+    const DEFAULTS: &'static [&'static str] = &["method=yoro", "foveation=off"];
 }
 
 /// The setting of frames in levels.
@@ -87,6 +101,7 @@ pub struct Foveated;
 
 impl Group for Foveated {
     const KEYS: &'static [&'static str] = &["foveation"];
+    const DEFAULTS: &'static [&'static str] = &["foveation=off"];
 }
 
 /// The options of a [`Group`]: `--KEY VALUE`; for switches `--KEY`, or `--no-KEY` if they are on by default.
@@ -275,14 +290,11 @@ impl SettingsArgs {
         named: impl IntoIterator<Item = String>,
     ) -> anyhow::Result<Settings> {
         let hud = self.no_hud.then(|| "hud=false".to_owned());
-        let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
-        let settings = defaults.changed(self.settings.as_deref(), overrides)?;
-        if settings.frame_rate != FrameRate::Full && settings.near_field.is_some() {
-            bail!(
-                "near-field and frame-rate={} do not go together: leave one of them out",
-                settings.frame_rate.name()
-            );
+        // Android's properties may be empty; here a script's variable is.
+        if let Some(empty) = self.overrides.iter().find(|pair| pair.trim_end().ends_with('=')) {
+            anyhow::bail!("--set {empty} has no value: give one, or leave it out");
         }
-        Ok(settings)
+        let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
+        Ok(defaults.changed(self.settings.as_deref(), overrides)?)
     }
 }

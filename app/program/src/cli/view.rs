@@ -40,16 +40,16 @@ pub struct ViewArgs {
     #[arg(long, default_value_t = 420.0, value_parser = args::parse_positive)]
     dpi: f32,
     /// The head's turn to the left in degrees
-    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_finite, value_name = "DEGREES")]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_degrees, value_name = "DEGREES")]
     yaw_degrees: f32,
     /// The head's turn upwards in degrees
-    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_finite, value_name = "DEGREES")]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_degrees, value_name = "DEGREES")]
     pitch_degrees: f32,
     /// The head's tilt to the left in degrees
-    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_finite, value_name = "DEGREES")]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_degrees, value_name = "DEGREES")]
     roll_degrees: f32,
     /// Turn to the left, in degrees, between rendering and display, which timewarp corrects
-    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_finite, value_name = "DEGREES")]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_degrees, value_name = "DEGREES")]
     late_yaw_degrees: f32,
     #[command(flatten)]
     renderer: SettingOptions<Renderer>,
@@ -72,6 +72,13 @@ impl ViewArgs {
         // A single picture cannot measure which of two methods is cheaper.
         self.settings
             .resolve(Settings::measured(), scene.chain(self.lenses.pairs()).chain(self.renderer.pairs()))
+    }
+
+    /// Returns the number of frames that are drawn.
+    fn frames(&self) -> u64 {
+        let acts: u32 = self.acts.iter().map(|act| act.frames()).sum();
+        let last = u32::from(!self.acts.is_empty());
+        u64::from(if self.loading { 1 } else { FRAMES + acts + last })
     }
 
     fn head(&self) -> HeldHead {
@@ -99,26 +106,26 @@ impl Subcommand for ViewArgs {
         let to = Destination::whole(&window);
         let period_ns = (1e9 / REFRESH_HZ) as i64;
         let mut now_ns = 0;
-        let mut frame = |viewer: &mut Cardboard| {
+        let bar = progress_bar(self.frames());
+        let mut frame = |viewer: &mut Cardboard| -> anyhow::Result<()> {
+            interrupt::check()?;
+            bar.inc(1);
             now_ns += period_ns;
             let timing =
                 FrameTiming { now_ns, expected_display_ns: now_ns + period_ns, refresh_hz: REFRESH_HZ };
-            viewer.frame(&to, &timing)
+            viewer.frame(&to, &timing)?;
+            Ok(())
         };
         if self.loading {
             frame(&mut viewer)?;
         } else {
-            let bar = progress_bar(FRAMES as u64);
             wait_for_first_scene(&mut viewer)?;
             for _ in 0..FRAMES {
-                interrupt::check()?;
                 frame(&mut viewer)?;
-                bar.inc(1);
             }
-            bar.finish_and_clear();
             for act in &self.acts {
-                interrupt::check()?;
-                for _ in 0..act.begin(&mut viewer, self.screen)? {
+                bar.suspend(|| act.begin(&mut viewer, self.screen))?;
+                for _ in 0..act.frames() {
                     frame(&mut viewer)?;
                 }
                 wait_for_other_scene(&mut viewer)?;
@@ -130,6 +137,7 @@ impl Subcommand for ViewArgs {
                 frame(&mut viewer)?;
             }
         }
+        bar.finish_and_clear();
         if let Some(errors) = gl.take_errors() {
             bail!("the GL driver reports {errors}: please report this as a bug");
         }
@@ -187,8 +195,16 @@ enum Act {
 }
 
 impl Act {
-    /// Begins the action on a screen of this size in pixels. Returns the number of frames that it lasts.
-    fn begin(self, viewer: &mut Cardboard, screen: [u32; 2]) -> anyhow::Result<u32> {
+    /// Returns the number of frames that the action lasts.
+    fn frames(self) -> u32 {
+        match self {
+            Act::Wait { seconds } => (seconds * REFRESH_HZ).ceil() as u32,
+            _ => 1,
+        }
+    }
+
+    /// Begins the action on a screen of this size in pixels.
+    fn begin(self, viewer: &mut Cardboard, screen: [u32; 2]) -> anyhow::Result<()> {
         match self {
             Act::Event(event) => println!("{}", viewer.event(event)?),
             Act::Look { yaw, pitch } => {
@@ -205,9 +221,9 @@ impl Act {
                     println!("{action}");
                 }
             }
-            Act::Wait { seconds } => return Ok((seconds * REFRESH_HZ).ceil() as u32),
+            Act::Wait { .. } => {}
         }
-        Ok(1)
+        Ok(())
     }
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs};
-use crate::cli::settings::{self, Renderer, SettingOptions, SettingsArgs};
+use crate::cli::settings::{self, HeadsetRenderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyePair};
 use yoro_context::HeadlessGraphics;
@@ -53,7 +53,7 @@ pub struct XrArgs {
     #[arg(long)]
     mono: bool,
     #[command(flatten)]
-    renderer: SettingOptions<Renderer>,
+    renderer: SettingOptions<HeadsetRenderer>,
     #[command(flatten)]
     settings: SettingsArgs,
     #[command(flatten)]

@@ -121,18 +121,14 @@ impl Hud {
     /// Draws the part in use over a rectangle.
     fn draw(&self, to: &Destination) {
         let rectangle = [to.origin[0], to.origin[1], to.size[0], to.size[1]].map(|n| n as f32);
-        self.draw_part(to, rectangle.into());
+        self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+        self.set_text(self.program.bind(), 0).set("rectangle", Vec4::from(rectangle));
+        self.gl.draw_screen();
     }
 
-    /// Draws what lies in `part` of the part in use, which fills a rectangle: origin and size in pixels.
-    fn draw_part(&self, part: &Destination, rectangle: Vec4) {
-        self.gl.bind_framebuffer(part.framebuffer, part.origin, part.size);
-        self.program
-            .bind()
-            .texture("panel", 0, self.texture.raw())
-            .set("rectangle", rectangle)
-            .set("used", self.used as f32 / SIZE[1] as f32);
-        self.gl.draw_screen();
+    /// Sets the uniforms and the texture of `include/panel.glsl` in a bound program.
+    fn set_text<'a>(&self, program: &'a Program, unit: u32) -> &'a Program {
+        program.texture("panel", unit, self.texture.raw()).set("used", self.used as f32 / SIZE[1] as f32)
     }
 }
 
@@ -185,27 +181,32 @@ impl Panel<'_> {
         });
     }
 
-    /// Draws the panel into the images of both eyes, or of a level of them: the part that the level shows. `shown` are the
-    /// whole eyes, `pair` those of the images.
-    pub fn draw_into_eyes(&self, shown: &EyePair, pair: &EyePair, eyes: &[Destination; 2]) {
+    /// Draws the panel into the images of both eyes.
+    pub fn draw_into_eyes(&self, pair: &EyePair, eyes: &[Destination; 2]) {
         let gl = &self.hud.gl;
         gl.pass("hud").run(|| {
             gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
                 let to = &eyes[eye.index()];
-                let (corner, size) = place(shown, pair, eye, self.hud.used, self.placement);
-                let [first, end] = [[0; 2], size]
-                    .map(|beyond| [0, 1].map(|i| (corner[i] + beyond[i]).clamp(0, to.size[i] as i32) as u32));
-                let part = [0, 1].map(|i| end[i] - first[i]);
-                if !part.contains(&0) {
-                    let at = [0, 1].map(|i| (to.origin[i] as i32 + corner[i]) as f32);
-                    let origin = [0, 1].map(|i| to.origin[i] + first[i]);
-                    let rectangle = Vec4::new(at[0], at[1], size[0] as f32, size[1] as f32);
-                    self.hud.draw_part(&Destination { origin, size: part, ..*to }, rectangle);
-                }
+                let (corner, size) = self.place(pair, eye);
+                let origin = [0, 1].map(|i| to.origin[i] + corner[i]);
+                self.hud.draw(&Destination { origin, size, ..*to });
             }
             gl.set_raster_state(&RasterState::SCREEN);
         });
+    }
+
+    /// Sets what the lenses' pass reads to draw the panel over an eye.
+    pub(crate) fn set(&self, program: &Program, unit: u32, pair: &EyePair, eye: Eye) {
+        let (corner, size) = self.place(pair, eye);
+        let scale = [0, 1].map(|i| pair.size[i] as f32 / size[i] as f32);
+        let first = [0, 1].map(|i| -(corner[i] as f32) / size[i] as f32);
+        let place = Vec4::new(scale[0], scale[1], first[0], first[1]);
+        self.hud.set_text(program, unit).set("panel_place", place);
+    }
+
+    fn place(&self, pair: &EyePair, eye: Eye) -> ([u32; 2], [u32; 2]) {
+        place(pair, eye, self.hud.used, self.placement)
     }
 }
 
@@ -217,23 +218,16 @@ fn below(placement: Placement) -> f32 {
     }
 }
 
-/// Returns the origin, which may lie outside, and the size, in pixels of an eye's image, of the panel's upper `used` rows.
-/// `shown` are the whole eyes, `pair` those of the image.
-fn place(
-    shown: &EyePair,
-    pair: &EyePair,
-    eye: Eye,
-    used: usize,
-    placement: Placement,
-) -> ([i32; 2], [i32; 2]) {
+/// Returns the origin and the size, in pixels of an eye's image, of the panel's upper `used` rows.
+fn place(pair: &EyePair, eye: Eye, used: usize, placement: Placement) -> ([u32; 2], [u32; 2]) {
     let frustum = &pair.frusta[eye.index()];
     let height = WIDTH * used as f32 / SIZE[0] as f32;
-    let x = -eye.side() * shown.ipd() / 2.0 / DISTANCE - WIDTH / 2.0;
-    let y = below(placement).max(shown.frusta[eye.index()].bottom + height) - height / 2.0;
+    let x = -eye.side() * pair.ipd() / 2.0 / DISTANCE - WIDTH / 2.0;
+    let y = below(placement).max(frustum.bottom + height) - height / 2.0;
     let per_tangent = [pair.size[0] as f32 / frustum.width(), pair.size[1] as f32 / frustum.height()];
     let corner = [(x - frustum.left) * per_tangent[0], (y - frustum.bottom) * per_tangent[1]];
     let size = [WIDTH * per_tangent[0], height * per_tangent[1]];
-    (corner.map(|n| n.round() as i32), size.map(|n| n.round().max(1.0) as i32))
+    (corner.map(|n| n.round() as u32), size.map(|n| n.round().max(1.0) as u32))
 }
 
 #[cfg(test)]
@@ -269,7 +263,7 @@ mod tests {
     fn the_panel_hangs_at_its_distance() {
         let frustum = Frustum::from_fov(-0.7, 0.7, 0.7, -0.7);
         let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.06, DepthRange::PAPER, [1000; 2], Eye::Right);
-        let [left, right] = Eye::BOTH.map(|eye| place(&pair, &pair, eye, SIZE[1], Placement::Below));
+        let [left, right] = Eye::BOTH.map(|eye| place(&pair, eye, SIZE[1], Placement::Below));
         assert_eq!(left.1, right.1);
         let disparity = left.0[0] as f32 - right.0[0] as f32;
         assert!((disparity - 0.06 / DISTANCE * pair.focal_length_pixels()).abs() <= 1.0);

@@ -5,8 +5,9 @@ use std::rc::Rc;
 
 use glam::{Mat4, Quat, Vec2, Vec4};
 
+use crate::hud::Panel;
 use crate::optics::{Optics, mesh_strip};
-use yoro::eyes::{Composition, Eye, Frustum};
+use yoro::eyes::{Composition, Eye, EyePair, Frustum};
 use yoro::opengl::LevelImages;
 use yoro_gl::{Context, Destination, Format, GlError, Mesh, Program, RasterState, ShaderSource, Texture};
 
@@ -18,6 +19,8 @@ const BORDER: f32 = 0.03;
 /// Width of the alignment line in metres, and its colour, a grey.
 const LINE_WIDTH: f32 = 0.0006;
 const LINE_COLOR: [f32; 4] = [0.35, 0.35, 0.35, 1.0];
+/// First texture unit that levels leave free.
+const PANEL_UNIT: u32 = 3;
 
 /// Distortion meshes of both eyes and the program that draws them.
 pub struct LensPass {
@@ -74,12 +77,28 @@ impl LensPass {
     }
 
     /// Like [`LensPass::run`], for eyes of levels, which are composed on the way: for each eye its images, filtered
-    /// linearly, and their places. Draws nothing if it was not made for levels.
-    pub fn run_levels(&self, eyes: &[(LevelImages, Composition); 2], turn: Quat, window: &Destination) {
+    /// linearly, and their places. A panel is drawn over them, as these eyes see it. Draws nothing if it was not made for
+    /// levels.
+    pub fn run_levels(
+        &self,
+        eyes: &[(LevelImages, Composition); 2],
+        panel: Option<(&Panel, &EyePair)>,
+        turn: Quat,
+        window: &Destination,
+    ) {
         let Some(program) = &self.of_levels else { return };
         self.draw(program, turn, window, |eye| {
             let (images, composition) = &eyes[eye.index()];
             images.set(program, composition, [0, 0]);
+            match panel {
+                Some((panel, pair)) => panel.set(program, PANEL_UNIT, pair, eye),
+                // Outside of every place; every sampler needs a texture.
+                None => {
+                    program
+                        .texture("panel", PANEL_UNIT, images.wide.color)
+                        .set("panel_place", Vec4::new(0.0, 0.0, -1.0, -1.0));
+                }
+            }
         });
     }
 

@@ -148,9 +148,6 @@ impl ViewerParams {
     }
 
     /// Like [`ViewerParams::find`], but looks for files in `folders` first.
-    ///
-    /// # Errors
-    /// [`ParamsError`].
     pub fn find_in(text: &str, folders: &[PathBuf]) -> Result<ViewerParams, ParamsError> {
         match folders.iter().map(|folder| folder.join(text)).find(|path| path.is_file()) {
             Some(path) => ViewerParams::load(&path),
@@ -175,9 +172,6 @@ impl ViewerParams {
     }
 
     /// Reads a file that holds either the stored binary format (sentinel, length, message) or a URI as text.
-    ///
-    /// # Errors
-    /// [`ParamsError`].
     pub fn load(path: &Path) -> Result<ViewerParams, ParamsError> {
         let read = || -> std::io::Result<Vec<u8>> {
             use std::io::Read;

@@ -15,5 +15,5 @@ mod view;
 pub use prepared::PreparedScene;
 pub use view::{
     DepthCopy, DepthImage, DepthReader, DepthResolve, GpuScene, MAX_POINT_LIGHTS, MSAA, RenderSettings,
-    RenderedView, Renderer, Selection, ViewReader, ViewTargets,
+    RenderedView, Renderer, ViewReader, ViewTargets,
 };

@@ -7,7 +7,7 @@ use yoro::opengl::{Gather, Source};
 use yoro_assets::Scene;
 use yoro_gl::{Context, Destination, GlError, RenderTarget};
 
-use crate::view::{GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
+use crate::view::{GpuScene, RenderSettings, Renderer, ViewTargets};
 
 /// A scene on the GPU and the renderer that was compiled for it.
 pub struct PreparedScene {
@@ -48,7 +48,7 @@ impl PreparedScene {
         views: &SynthesisViews,
         to: &mut RenderTarget,
     ) -> Result<(), GlError> {
-        let rendered = self.renderer.render(targets, &self.scene, &views.source, Selection::All)?;
+        let rendered = self.renderer.render(targets, &self.scene, &views.source)?;
         to.resize(views.target.size)?;
         let source = Source::new(rendered.color.color(0).raw(), rendered.depth.texture.raw());
         gather.synthesize(source, &views.warp, &Destination::whole(to))

@@ -115,6 +115,15 @@ choices! {
         Paper = "paper",
     }
 
+    /// What becomes of pixels that the rendered eye does not show.
+    HoleMethod {
+        /// Filled from their background
+        #[default]
+        Filled = "filled",
+        /// Rendered: opaque surfaces are drawn once more, for the other eye, in these pixels alone
+        Rendered = "rendered",
+    }
+
     /// How many of the display's frames are rendered.
     FrameRate {
         /// Every frame

@@ -13,8 +13,8 @@ pub mod telemetry;
 mod value;
 
 pub use choices::{
-    ChoiceError, DisplayKind, FrameRate, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice, Performance, Pipeline,
-    Timewarp,
+    ChoiceError, DisplayKind, FrameRate, HoleMethod, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice,
+    Performance, Pipeline, Timewarp,
 };
 pub use quantities::{ImBufferSize, Ipd, IpdError, ParseImBufferSizeError, ScreenSize, ScreenSizeError};
 pub use setting::{PROPERTY_PREFIX, Setting};

@@ -3,7 +3,7 @@
 use toml::Value;
 
 use crate::settings::{SETTINGS, Settings};
-use crate::value::{Choice, SettingValue, plain};
+use crate::value::{Choice, SettingValue, plain, shown};
 
 /// The prefix of Android's system properties that are settings: `adb shell setprop debug.yoro.method mono`.
 pub const PROPERTY_PREFIX: &str = "debug.yoro.";
@@ -156,7 +156,7 @@ impl Setting {
             return Ok(());
         }
         let word = Value::from(text);
-        let shown = typed.as_ref().unwrap_or(&word).to_string();
+        let shown = shown(typed.as_ref().unwrap_or(&word));
         self.set(settings, &word).map_err(|remedy| (shown, remedy))
     }
 }

@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use crate::choices::{DisplayKind, FrameRate, MSAA, Method, MethodChoice, Performance, Pipeline, Timewarp};
+use crate::choices::{
+    DisplayKind, FrameRate, HoleMethod, MSAA, Method, MethodChoice, Performance, Pipeline, Timewarp,
+};
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
-use crate::value::SettingValue;
+use crate::value::{SettingValue, shown};
 use yoro::eyes::{Eye, FoveationLevel, GuardBand};
 
 /// The largest settings file in bytes.
@@ -27,41 +29,15 @@ pub enum SettingsError {
         /// The system's error.
         source: std::io::Error,
     },
-    /// The file is not TOML.
-    #[error("the settings file {path} is not TOML ({what}): write lines such as scene = \"prototype\"")]
-    Syntax {
-        /// The file.
-        path: PathBuf,
-        /// The parser's message.
-        what: String,
-    },
-    /// The key does not exist.
-    #[error("{origin}: there is no setting \"{key}\"; choose one of {}", keys())]
-    UnknownKey {
-        /// The file, or the override.
-        origin: String,
-        /// The key.
-        key: String,
-    },
-    /// The value does not fit its key.
-    #[error("{origin}: the setting \"{key}\" cannot be {value}: {remedy}")]
-    Value {
-        /// The file, or the override.
-        origin: String,
-        /// The key.
-        key: String,
-        /// The value given.
-        value: String,
-        /// The possible values.
-        remedy: String,
-    },
-    /// The override is not `key=value`.
-    #[error("\"{0}\" is not a setting: write key=value, such as method=yoro")]
-    NoPair(String),
+    /// The file is not TOML, a setting does not exist, or its value does not fit. Holds the sentence.
+    #[error("{0}")]
+    Unusable(String),
 }
 
-fn keys() -> String {
-    SETTINGS.iter().map(|setting| setting.key).collect::<Vec<_>>().join(", ")
+impl SettingsError {
+    fn value(origin: &str, key: &str, value: &str, remedy: &str) -> SettingsError {
+        SettingsError::Unusable(format!("{origin}: the setting \"{key}\" cannot be {value}: {remedy}"))
+    }
 }
 
 /// Generates [`Settings`], their defaults and [`SETTINGS`] from the same rows. A field's documentation is its help.
@@ -121,19 +97,19 @@ settings! {
         off_help("paper: do not interpolate between ImBuffer entries"),
     /// paper: whole source columns and one depth sample per ImBuffer pixel, as the text says.
     "strict" strict: bool = false,
-    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`), or complete from a distance in metres (`1.0`).
+    /// How much wider the dominant eye is rendered: `none`, pixels (`40px`; with foveation those of the wide layer), or
+    /// complete from a distance in metres (`1.0`).
     "guard-band" guard_band: Option<GuardBand> = None;
         value_name("none|Npx|METRES");
         auto("1.0; paper: none"),
-    /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
-    "near-field" near_field: Option<f32> = None;
-        value_name("METRES");
-        range(|s| s.near_field.is_none_or(is_positive), "give metres above 0, or auto"),
+    /// yoro: what becomes of pixels that the rendered eye does not show. `rendered` is the best quality; it draws opaque
+    /// surfaces twice, but shades few of them again.
+    "holes" holes: HoleMethod = HoleMethod::default(),
     /// Switch to two real renders while most of the view is too near.
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),
-    /// Headsets whose runtime makes frames from colour, depth and motion vectors: with yoro and conventional, without near
-    /// field, render every second frame and leave the others to the runtime.
+    /// Headsets whose runtime makes frames from colour, depth and motion vectors: with yoro and conventional, render
+    /// every second frame and leave the others to the runtime.
     "frame-rate" frame_rate: FrameRate = FrameRate::default(),
     /// The viewer: v1, v2, the URI of its QR code, or a parameter file.
     "viewer" viewer: String = "v2".into(),
@@ -150,12 +126,12 @@ settings! {
     "render-scale" render_scale: f32 = 1.0;
         range(|s| (0.25..=2.0).contains(&s.render_scale), "give a factor from 0.25 to 2"),
     /// Render each eye at full density only around its axis, as far as 30 (`low`) or 20 degrees (`medium`, `high`). Beyond,
-    /// with half (`low`, `medium`) or a third of the pixels along each axis. Not with `timewarp=position`.
-    "foveation" foveation: Option<FoveationLevel> = None; auto("headsets: medium; others: off"),
+    /// with half (`low`, `medium`) or a third of the pixels along each axis.
+    "foveation" foveation: Option<FoveationLevel> = None; auto("headsets: medium; others, and all measurements: off"),
     /// Lower render scale and ImBuffer to hold the display's refresh rate and to spare a hot device.
     "adaptive" adaptive: bool = false,
     /// Phones: how the finished image follows the head after rendering. `position` copies the depth of both eyes and adds
-    /// three passes to each.
+    /// three passes to each; not with `foveation`.
     "timewarp" timewarp: Timewarp = Timewarp::default(),
     /// Correct the lenses' chromatic aberration.
     "chromatic" chromatic: bool = false,
@@ -212,9 +188,6 @@ impl Settings {
     }
 
     /// Returns the defaults, changed as by [`Settings::changed`].
-    ///
-    /// # Errors
-    /// [`SettingsError`].
     pub fn resolve<S: AsRef<str>>(
         file: Option<&Path>,
         overrides: impl IntoIterator<Item = S>,
@@ -224,9 +197,6 @@ impl Settings {
 
     /// Returns these settings, changed first by a TOML file, if given, then by `key=value` texts in order. An empty
     /// value changes nothing, since a system property that was unset reads as empty.
-    ///
-    /// # Errors
-    /// [`SettingsError`].
     pub fn changed<S: AsRef<str>>(
         self,
         file: Option<&Path>,
@@ -239,7 +209,28 @@ impl Settings {
         for pair in overrides {
             settings.apply(pair.as_ref())?;
         }
-        Ok(settings)
+        settings.contradiction().map_or(Ok(settings), Err)
+    }
+
+    /// Returns what is wrong with two settings together, of which the first one has no effect; `None` if nothing is.
+    pub fn contradiction(&self) -> Option<SettingsError> {
+        let foveation = self.foveation.filter(|level| *level != FoveationLevel::Off);
+        if let Some(level) = foveation.filter(|_| self.timewarp == Timewarp::Position) {
+            let reason = "timewarp=position do not go together, since that moves whole eyes";
+            return Some(SettingsError::Unusable(format!(
+                "foveation={} and {reason}: leave one of them out",
+                level.name()
+            )));
+        }
+        let writes_motion = [Method::Synthesized, Method::Conventional].contains(&self.method.first());
+        (self.frame_rate != FrameRate::Full && !writes_motion).then(|| {
+            let reason = "do not go together, since only yoro and conventional write motion vectors";
+            SettingsError::Unusable(format!(
+                "frame-rate={} and method={} {reason}: leave one of them out",
+                self.frame_rate.name(),
+                self.method.name()
+            ))
+        })
     }
 
     /// Applies whatever is valid in a TOML file, and returns the errors, for programs that cannot simply be restarted.
@@ -253,7 +244,10 @@ impl Settings {
             Ok(table) => table,
             Err(error) => {
                 let what = toml::de::Error::message(&error).trim().replace('\n', " ");
-                return vec![SettingsError::Syntax { path: path.into(), what }];
+                return vec![SettingsError::Unusable(format!(
+                    "the settings file {} is not TOML ({what}): write lines such as scene = \"prototype\"",
+                    path.display()
+                ))];
             }
         };
         let origin = path.display().to_string();
@@ -266,12 +260,8 @@ impl Settings {
     }
 
     fn set(&mut self, origin: &str, key: String, value: &Value) -> Result<(), SettingsError> {
-        find(origin, &key)?.set(self, value).map_err(|remedy| SettingsError::Value {
-            origin: origin.into(),
-            key,
-            value: value.to_string(),
-            remedy,
-        })
+        let set = find(origin, &key)?.set(self, value);
+        set.map_err(|remedy| SettingsError::value(origin, &key, &shown(value), &remedy))
     }
 
     /// Sets one setting by a text `key=value`. Lists are written as in TOML or separated by commas; `auto` resets a
@@ -280,15 +270,13 @@ impl Settings {
     /// # Errors
     /// [`SettingsError`]; the settings stay unchanged.
     pub fn apply(&mut self, pair: &str) -> Result<(), SettingsError> {
-        let (key, text) = pair.split_once('=').ok_or_else(|| SettingsError::NoPair(pair.into()))?;
+        let (key, text) = pair.split_once('=').ok_or_else(|| {
+            let what = format!("\"{pair}\" is not a setting: write key=value, such as method=yoro");
+            SettingsError::Unusable(what)
+        })?;
         let key = key.trim();
-        let setting = find(pair, key)?;
-        setting.parse_into(self, text).map_err(|(value, remedy)| SettingsError::Value {
-            origin: pair.into(),
-            key: key.into(),
-            value,
-            remedy,
-        })
+        let parsed = find(pair, key)?.parse_into(self, text);
+        parsed.map_err(|(value, remedy)| SettingsError::value(pair, key, &value, &remedy))
     }
 }
 
@@ -307,7 +295,10 @@ impl Display for Settings {
 
 /// Returns the setting with a key from a file or a text.
 fn find(origin: &str, key: &str) -> Result<&'static Setting, SettingsError> {
-    Setting::find(key).ok_or_else(|| SettingsError::UnknownKey { origin: origin.into(), key: key.into() })
+    Setting::find(key).ok_or_else(|| {
+        let keys = SETTINGS.iter().map(|setting| setting.key).collect::<Vec<_>>().join(", ");
+        SettingsError::Unusable(format!("{origin}: there is no setting \"{key}\"; choose one of {keys}"))
+    })
 }
 
 #[cfg(test)]
@@ -396,6 +387,28 @@ mod tests {
         refused("screen=15.8x7.1mm", &["30 to 400"]);
         refused("frame-rate=36", &["\"frame-rate\"", "full"]);
         refused("refresh-rate=0", &["\"refresh-rate\"", "auto"]);
+    }
+
+    #[test]
+    fn settings_without_effect_beside_others_are_refused() {
+        let refused = |one: &str, other: &str| {
+            let message = with(&[one, other]).unwrap_err().to_string();
+            assert!(
+                message.starts_with(&format!("{one} and {other} do not go together, since ")),
+                "{message}"
+            );
+        };
+        refused("foveation=medium", "timewarp=position");
+        let without =
+            Method::ALL.into_iter().filter(|m| ![Method::Synthesized, Method::Conventional].contains(m));
+        for method in without {
+            for rate in ["half", "auto"] {
+                refused(&format!("frame-rate={rate}"), &format!("method={}", method.name()));
+            }
+        }
+        for pairs in [["foveation=off", "timewarp=position"], ["frame-rate=half", "method=auto"]] {
+            assert!(with(&pairs).is_ok(), "{pairs:?}");
+        }
     }
 
     #[test]

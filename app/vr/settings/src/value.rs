@@ -33,6 +33,11 @@ pub(crate) fn plain(value: &Value) -> String {
     }
 }
 
+/// Returns a value as a message quotes it. Numbers of many digits are written with an exponent.
+pub(crate) fn shown(value: &Value) -> String {
+    value.as_float().map_or_else(|| value.to_string(), |number| format!("{number:?}"))
+}
+
 /// A type that settings can have.
 pub(crate) trait SettingValue: Sized {
     const CHOICES: &'static [Choice] = &[];

@@ -32,7 +32,7 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
     StereoOptions {
         synthesis: PipelineOptions { paper, ..options.synthesis },
         guard_band: settings.guard_band.unwrap_or(options.guard_band),
-        near_field: settings.near_field,
+        holes: settings.holes,
         policy: settings.switch.then(NearFieldPolicy::default),
         // A display whose runtime makes frames asks for them.
         motion_vectors: false,
@@ -55,7 +55,7 @@ mod tests {
                 "linear-interpolation=false",
                 "strict=true",
                 "guard-band=40px",
-                "near-field=1",
+                "holes=rendered",
                 "switch=false",
                 "frame-rate=half",
             ],

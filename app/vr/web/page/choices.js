@@ -8,10 +8,10 @@ import { explanations } from './methods.js';
 import { sentence } from './sentence.js';
 
 /** The settings that have an element of the same name. */
-const choices = ['scene', 'viewpoint', 'method', 'msaa', 'dominant', 'display', 'scale', 'ipd'];
+const choices = ['scene', 'viewpoint', 'method', 'msaa', 'holes', 'dominant', 'display', 'scale', 'ipd'];
 const numbers = ['viewpoint', 'msaa', 'scale', 'ipd'];
 /** The settings that do not apply to pictures. */
-const ofScenes = ['viewpoint', 'method', 'msaa', 'dominant'];
+const ofScenes = ['viewpoint', 'method', 'msaa', 'holes', 'dominant'];
 /** The displays that compare with a real render, which pictures lack. */
 const comparing = ['divider', 'difference', 'flicker'];
 
@@ -45,7 +45,8 @@ export function apply() {
   showChoices();
   if (!app.page) return;
   app.page.configure(JSON.stringify({
-    method: settings.method, msaa: settings.msaa, ipd: settings.ipd / 1000, dominant: settings.dominant,
+    method: settings.method, msaa: settings.msaa, holes: settings.holes, ipd: settings.ipd / 1000,
+    dominant: settings.dominant,
     // A viewer and a headset show both eyes, whatever the screen shows.
     display: app.busy?.immersive ? 'side-by-side' : settings.display,
     foveation: app.busy?.name === 'headset' ? element('headset-foveation').value : 'off',

@@ -24,8 +24,8 @@ const compares = () => Boolean(app.facts && app.page && !app.busy) && ['divider'
 export function forgetFigures() {
   clearTimeout(timer);
   current = null;
-  const { method, msaa, ipd, scale, scene, dominant } = app.settings;
-  const now = [method, msaa, ipd, scale, scene, dominant, app.facts?.name].join();
+  const { method, msaa, holes, ipd, scale, scene, dominant } = app.settings;
+  const now = [method, msaa, holes, ipd, scale, scene, dominant, app.facts?.name].join();
   if (about !== now || !(compares() || app.page?.reason)) element('figures').textContent = '';
   about = now;
 }

@@ -1,13 +1,14 @@
 // The settings in the address's fragment. Settings with their default value are left out.
 
-/** The defaults. Those of method, samples, IPD and dominant eye are the module's. */
+/** The defaults. Those of method, samples, holes, IPD and dominant eye are the module's. */
 export const defaults = {
-  scene: 'prototype', viewpoint: 0, method: '', msaa: 0, ipd: 0,
+  scene: 'prototype', viewpoint: 0, method: '', msaa: 0, holes: '', ipd: 0,
   dominant: '', display: 'divider', divider: 50, scale: 1, at: null, stream: null,
 };
 
 const allowed = {
   msaa: ['4', '1'],
+  holes: ['filled', 'rendered'],
   dominant: ['right', 'left'],
   display: ['divider', 'difference', 'side-by-side', 'cross-eyed', 'anaglyph', 'left', 'right', 'flicker'],
   scale: ['1', '0.75', '0.5'],

@@ -88,15 +88,12 @@ impl Default for PictureOptions {
 /// A reason why two pictures cannot be used, as a sentence.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// An option is out of range.
+    /// An option is out of range, or the pictures differ in size.
     #[error("{0}")]
-    Option(String),
+    Unusable(String),
     /// A file is not a picture, or not of the required kind.
     #[error(transparent)]
     File(#[from] yoro_media::PictureError),
-    /// The pictures differ in size.
-    #[error("the colour picture is {}x{} pixels and the depth picture {}x{}: both must have one size", .0[0], .0[1], .1[0], .1[1])]
-    Sizes([u32; 2], [u32; 2]),
     /// The depth values do not fit their encoding.
     #[error("the depth picture does not fit its encoding: {0}")]
     Values(#[from] StoredDepthError),
@@ -116,17 +113,16 @@ pub struct PicturePair {
 
 impl PicturePair {
     /// Decodes two files, as `yoro synthesize` does.
-    ///
-    /// # Errors
-    /// [`PictureError`].
     pub fn load(color: &Path, depth: &Path) -> Result<PicturePair, PictureError> {
         let (color, depth) = (load_color(color)?, load_depth(depth)?);
-        let (size, depth_size) = (color.dimensions().into(), depth.image.dimensions().into());
-        if size != depth_size {
-            return Err(PictureError::Sizes(size, depth_size));
+        let ([width, height], [w, h]) = (color.dimensions().into(), depth.image.dimensions().into());
+        if [width, height] != [w, h] {
+            return Err(PictureError::Unusable(format!(
+                "the colour picture is {width}x{height} pixels and the depth picture {w}x{h}: both must have one size"
+            )));
         }
         Ok(PicturePair {
-            size,
+            size: [width, height],
             rgba: color.rows().rev().flatten().flat_map(|p| [p.0[0], p.0[1], p.0[2], 255]).collect(),
             stored: depth.image.rows().rev().flatten().map(|p| p.0[0]).collect(),
             samples: depth.samples,
@@ -139,7 +135,7 @@ impl PicturePair {
     /// [`PictureError`] for invalid options, and for values that do not fit them.
     pub fn nearness(&self, options: &PictureOptions, ipd: f32) -> Result<Nearness, PictureError> {
         let refuse = |condition: bool, text: &str| {
-            if condition { Err(PictureError::Option(text.into())) } else { Ok(()) }
+            if condition { Err(PictureError::Unusable(text.into())) } else { Ok(()) }
         };
         refuse(
             !(options.near > 0.0 && options.near < options.far),

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, FoveationLevel, Gaze, Pose, StereoViews};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_render::RenderSettings;
-use yoro_render::stereo::{Method, MethodChoice, StereoOptions, StereoSession};
+use yoro_render::stereo::{HoleMethod, Method, MethodChoice, StereoOptions, StereoSession};
 use yoro_settings::Ipd;
 
 /// The way in which two images are shown on a flat screen.
@@ -65,6 +65,8 @@ pub struct Settings {
     pub method: MethodChoice,
     /// Samples per pixel.
     pub msaa: u32,
+    /// What becomes of pixels that the rendered eye does not show.
+    pub holes: HoleMethod,
     /// Distance between the eyes in metres.
     pub ipd: Ipd,
     /// The eye that is rendered.
@@ -81,6 +83,7 @@ impl Default for Settings {
         Settings {
             method: MethodChoice::default(),
             msaa,
+            holes: HoleMethod::default(),
             ipd: Ipd::DEFAULT,
             dominant,
             display: Display::SideBySide,
@@ -103,10 +106,10 @@ impl Settings {
         RenderSettings { msaa: self.msaa, ..RenderSettings::default() }
     }
 
-    /// Returns the methods' options. They differ from the desktop's in one: frames are never rendered twice because
+    /// Returns the methods' options. They differ from the desktop's in one default: frames are never rendered twice because
     /// much of the view is near, since detecting that would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
-        StereoOptions { policy: None, ..StereoOptions::default() }
+        StereoOptions { policy: None, holes: self.holes, ..StereoOptions::default() }
     }
 
     /// Returns what a headset's eyes see with the foveation.

@@ -98,17 +98,11 @@ impl Video {
     }
 
     /// Returns the codec's name in the form that the browser's decoder takes.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn codec(&self) -> Result<String, JsError> {
         self.index.codec().map_err(sentence)
     }
 
     /// Returns the decoder's configuration.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn description(&self) -> Result<Vec<u8>, JsError> {
         self.index.description().map_err(sentence)
     }

@@ -10,7 +10,6 @@ use crate::host::host;
 /// A configuration: the values that depend on the script.
 #[derive(Clone, Copy, Default)]
 pub struct AConfiguration {
-    density: i32,
     sdk: i32,
     landscape: bool,
 }
@@ -43,8 +42,7 @@ unsafe extern "C" fn AConfiguration_delete(configuration: *mut AConfiguration) {
 extern "C" fn AConfiguration_fromAssetManager(configuration: &mut AConfiguration, _manager: *const c_void) {
     let host = host();
     let (width, height) = host.window.size();
-    *configuration =
-        AConfiguration { density: host.device.density, sdk: host.device.sdk, landscape: width >= height };
+    *configuration = AConfiguration { sdk: host.device.sdk, landscape: width >= height };
 }
 
 extern "C" fn AConfiguration_copy(to: &mut AConfiguration, from: &AConfiguration) {
@@ -70,7 +68,7 @@ macro_rules! getters {
 }
 
 getters! {
-    AConfiguration_getDensity: configuration => configuration.density;
+    AConfiguration_getDensity: _ => 160;
     AConfiguration_getOrientation: configuration => if configuration.landscape { 2 } else { 1 };
     AConfiguration_getSdkVersion: configuration => configuration.sdk;
     AConfiguration_getKeyboard: _ => 1;

@@ -16,7 +16,6 @@ use crate::android::looper::{ALooper, Callback};
 use crate::exports::{Export, System, exports};
 use crate::fd::EventFd;
 use crate::host::{host, lock};
-use crate::script::{Device, SensorKind};
 
 /// Acceleration of gravity in m/s².
 const GRAVITY: f32 = 9.81;
@@ -27,21 +26,20 @@ const DEFAULT_PERIOD: u64 = 200_000_000;
 /// Minimum period in nanoseconds.
 const MIN_PERIOD: u64 = 5_000_000;
 
-/// A sensor of the device.
+/// `ASENSOR_TYPE_ACCELEROMETER`. The other sensors are gyroscopes.
+const ACCELEROMETER: c_int = 1;
+
+/// A sensor of the device, with its `ASENSOR_TYPE_*`.
 pub struct ASensor {
-    kind: SensorKind,
+    kind: c_int,
     name: &'static CStr,
 }
 
-impl ASensor {
-    fn type_number(&self) -> c_int {
-        match self.kind {
-            SensorKind::Accelerometer => 1,
-            SensorKind::Gyroscope => 4,
-            SensorKind::GyroscopeUncalibrated => 16,
-        }
-    }
-}
+static SENSORS: [ASensor; 3] = [
+    ASensor { kind: 16, name: c"Simulated gyroscope, uncalibrated" },
+    ASensor { kind: 4, name: c"Simulated gyroscope" },
+    ASensor { kind: ACCELEROMETER, name: c"Simulated accelerometer" },
+];
 
 /// `ASensorEvent`.
 #[repr(C)]
@@ -105,26 +103,15 @@ impl Motion {
 
 /// The device's sensors, and the head that the device is attached to.
 pub struct Sensors {
-    list: Vec<&'static ASensor>,
+    list: &'static [ASensor],
     motion: Mutex<Motion>,
     queues: Mutex<Vec<&'static ASensorEventQueue>>,
 }
 
 impl Sensors {
-    /// Creates the sensors that the script lists. The head looks straight ahead.
-    pub fn new(device: &Device) -> Self {
-        let list = device
-            .sensors
-            .iter()
-            .map(|kind| {
-                let name = match kind {
-                    SensorKind::Accelerometer => c"Simulated accelerometer",
-                    SensorKind::Gyroscope => c"Simulated gyroscope",
-                    SensorKind::GyroscopeUncalibrated => c"Simulated gyroscope, uncalibrated",
-                };
-                &*Box::leak(Box::new(ASensor { kind: *kind, name }))
-            })
-            .collect();
+    /// Creates the sensors, or none. The head looks straight ahead.
+    pub fn new(has_sensors: bool) -> Self {
+        let list = if has_sensors { &SENSORS[..] } else { &[] };
         let still = Motion { from: Quat::IDENTITY, to: Quat::IDENTITY, start: 0, duration: 0 };
         Self { list, motion: Mutex::new(still), queues: Mutex::default() }
     }
@@ -147,25 +134,21 @@ impl Sensors {
         let motion = *lock(&self.motion);
         let head = motion.orientation(at);
         let mut data = [0.0; 16];
-        match sensor.kind {
-            SensorKind::Accelerometer => {
-                let up = Self::to_device(head.inverse() * Vec3::new(0.0, GRAVITY, 0.0));
-                data[..3].copy_from_slice(&up.to_array());
+        let measured = if sensor.kind == ACCELEROMETER {
+            head.inverse() * Vec3::new(0.0, GRAVITY, 0.0)
+        } else {
+            // The mean rate since the last sample, so that integrating the samples results in the orientation.
+            let mut turned = motion.orientation(at - period).inverse() * head;
+            if turned.w < 0.0 {
+                turned = -turned;
             }
-            SensorKind::Gyroscope | SensorKind::GyroscopeUncalibrated => {
-                // The mean rate since the last sample, so that integrating the samples results in the orientation.
-                let mut turned = motion.orientation(at - period).inverse() * head;
-                if turned.w < 0.0 {
-                    turned = -turned;
-                }
-                let rate = Self::to_device(turned.to_scaled_axis() / (period as f32 * 1e-9));
-                data[..3].copy_from_slice(&rate.to_array());
-            }
-        }
+            turned.to_scaled_axis() / (period as f32 * 1e-9)
+        };
+        data[..3].copy_from_slice(&Self::to_device(measured).to_array());
         ASensorEvent {
             version: size_of::<ASensorEvent>() as i32,
-            sensor: sensor.type_number(),
-            kind: sensor.type_number(),
+            sensor: sensor.kind,
+            kind: sensor.kind,
             reserved0: 0,
             timestamp: at as i64,
             data,
@@ -179,8 +162,8 @@ impl Sensors {
         for queue in lock(&self.queues).iter() {
             let mut state = lock(&queue.state);
             let mut new = Vec::new();
-            for sensor in &self.list {
-                if let Some(schedule) = state.enabled.get_mut(&sensor.type_number()) {
+            for sensor in self.list {
+                if let Some(schedule) = state.enabled.get_mut(&sensor.kind) {
                     // After a long sleep, only deliver as many samples as the FIFO holds.
                     let backlog =
                         (now.saturating_sub(schedule.next) / schedule.period).saturating_sub(FIFO as u64);
@@ -227,12 +210,8 @@ extern "C" fn ASensorManager_getInstanceForPackage(_package: *const c_char) -> *
 }
 
 extern "C" fn ASensorManager_getDefaultSensor(_manager: *const c_void, kind: c_int) -> *const ASensor {
-    host()
-        .sensors
-        .list
-        .iter()
-        .find(|sensor| sensor.type_number() == kind)
-        .map_or(std::ptr::null(), |sensor| std::ptr::from_ref(*sensor))
+    let found = host().sensors.list.iter().find(|sensor| sensor.kind == kind);
+    found.map_or(std::ptr::null(), std::ptr::from_ref)
 }
 
 unsafe extern "C" fn ASensorManager_createEventQueue(
@@ -282,7 +261,7 @@ impl ASensorEventQueue {
         let mut state = lock(&self.state);
         let schedule = state
             .enabled
-            .entry(sensor.type_number())
+            .entry(sensor.kind)
             .or_insert(Schedule { period: DEFAULT_PERIOD, next: now + DEFAULT_PERIOD });
         if let Some(period) = period {
             let period = period.max(MIN_PERIOD);
@@ -302,7 +281,7 @@ extern "C" fn ASensorEventQueue_registerSensor(
 }
 
 extern "C" fn ASensorEventQueue_disableSensor(queue: &ASensorEventQueue, sensor: &ASensor) -> c_int {
-    lock(&queue.state).enabled.remove(&sensor.type_number());
+    lock(&queue.state).enabled.remove(&sensor.kind);
     0
 }
 

@@ -6,6 +6,7 @@ use std::os::fd::IntoRawFd as _;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
+use crate::clock::REFRESH_HZ;
 use crate::host::{Host, host, lock};
 use crate::jni::{Data, Member, Object, Value};
 use crate::script::Battery;
@@ -13,6 +14,8 @@ use crate::script::Battery;
 /// BatteryManager returns `Integer.MIN_VALUE` or `Long.MIN_VALUE` for "unsupported".
 const UNSUPPORTED: i32 = i32::MIN;
 const CAMERA: &str = "android.permission.CAMERA";
+/// Pixels per inch of a phone's screen with a width of 110 mm and few pixels.
+const DPI: f32 = 74.0;
 
 /// Returns the result of a call, or `None` if the method is not known.
 pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<Value> {
@@ -72,7 +75,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             host.request(format!("sustained performance {}", if is_on { "on" } else { "off" }));
             Value::Void
         }
-        "isSustainedPerformanceModeSupported" => Value::Boolean(host.device.sustained_performance),
+        "isSustainedPerformanceModeSupported" => Value::Boolean(true),
         "hasSystemFeature" => {
             let version = host.device.features.get(&text(0)?);
             Value::Boolean(version.is_some_and(|version| *version >= int(1)))
@@ -247,7 +250,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         // The display's size in its upright orientation: the window's, with width and height swapped.
         "getPhysicalWidth" => Value::Int(host.device.mode.map_or(host.window.size().1, |mode| mode[1])),
         "getPhysicalHeight" => Value::Int(host.device.mode.map_or(host.window.size().0, |mode| mode[0])),
-        "getRefreshRate" => Value::Float(host.device.refresh_hz as f32),
+        "getRefreshRate" => Value::Float(REFRESH_HZ as f32),
         "getRotation" => Value::Int(1),
         // This fills in a DisplayMetrics, whose fields are handled below.
         "getRealMetrics" => Value::Void,
@@ -260,8 +263,7 @@ pub fn field(member: &Member) -> Option<Value> {
     let host = host();
     let (width, height) = host.window.size();
     Some(match (member.class.as_str(), member.name.as_str()) {
-        ("android/util/DisplayMetrics", "xdpi") => Value::Float(host.device.xdpi),
-        ("android/util/DisplayMetrics", "ydpi") => Value::Float(host.device.ydpi),
+        ("android/util/DisplayMetrics", "xdpi" | "ydpi") => Value::Float(DPI),
         ("android/util/DisplayMetrics", "widthPixels") => Value::Int(width),
         ("android/util/DisplayMetrics", "heightPixels") => Value::Int(height),
         _ => return None,

@@ -28,7 +28,7 @@ use yoro_assets::ShadingStyle;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Capabilities, Context};
 use yoro_render::stereo::{FrameTargets, Method, StereoImages, StereoOptions, StereoSession};
-use yoro_render::{DepthReader, PreparedScene, RenderSettings, Selection, ViewTargets};
+use yoro_render::{DepthReader, PreparedScene, RenderSettings, ViewTargets};
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
 use yoro_test_support::record::{RecordedPass, Recorder};
 use yoro_viewer::render_settings;
@@ -215,7 +215,7 @@ impl Estimator {
         let view = reversed(pair).view(pair.dominant);
         let mut targets = ViewTargets::default();
         let PreparedScene { renderer, scene } = &mut self.scene;
-        let rendered = renderer.render(&mut targets, scene, &view, Selection::All)?;
+        let rendered = renderer.render(&mut targets, scene, &view)?;
         let mut reader = DepthReader::new(&self.gl)?;
         reader.copy(&rendered.depth, view.size)?;
         Ok(Lamps::new(&view, &reader.read(), &scene.lights))

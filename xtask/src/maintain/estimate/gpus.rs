@@ -69,17 +69,12 @@ impl Replacement {
     /// Changes the library in memory. Returns `None` if the library lacks the old entry.
     pub fn apply(&self, library: &mut [u8]) -> Option<()> {
         let Entry { gpu, chip, gmem } = self.new;
-        // Layout in Mesa 26: 64-bit chip, GPU, tile memory. In Mesa 25: GPU, chip, tile memory.
-        let wide = |gpu: u32, chip: u64| [&chip.to_le_bytes()[..], &gpu.to_le_bytes()].concat();
-        let narrow = |gpu: u32, chip: u64| [gpu.to_le_bytes(), (chip as u32).to_le_bytes()].concat();
-        let (old, new, at) = [wide as fn(u32, u64) -> Vec<u8>, narrow].into_iter().find_map(|layout| {
-            let old = layout(self.old_gpu, self.old_chip);
-            let at = library.windows(old.len()).position(|window| window == old)?;
-            Some((old, layout(gpu, chip), at))
-        })?;
-        let gmem_at = at + old.len();
-        library.get_mut(at..gmem_at)?.copy_from_slice(&new);
-        library.get_mut(gmem_at..gmem_at + 4)?.copy_from_slice(&gmem.to_le_bytes());
+        // Layout in Mesa 26: 64-bit chip, GPU, tile memory.
+        let key = |gpu: u32, chip: u64| [&chip.to_le_bytes()[..], &gpu.to_le_bytes()].concat();
+        let old = key(self.old_gpu, self.old_chip);
+        let at = library.windows(old.len()).position(|window| window == old)?;
+        let new = [key(gpu, chip), gmem.to_le_bytes().to_vec()].concat();
+        library.get_mut(at..at + new.len())?.copy_from_slice(&new);
         Some(())
     }
 }
@@ -132,14 +127,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_entry_of_the_stand_in_is_replaced_in_either_layout() {
+    fn an_entry_of_the_stand_in_is_replaced() {
         let words = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
-        let mut old = words(&[7, 618, 0x0601_08ff, 5, 7]);
-        QUEST_2.apply(&mut old).unwrap();
-        assert_eq!(old, words(&[7, 650, 0x0605_00ff, 0x12_0000, 7]));
-        let mut new = words(&[7, 0x0601_08ff, 0, 618, 5, 7]);
-        QUEST_2.apply(&mut new).unwrap();
-        assert_eq!(new, words(&[7, 0x0605_00ff, 0, 650, 0x12_0000, 7]));
+        let mut library = words(&[7, 0x0601_08ff, 0, 618, 5, 7]);
+        QUEST_2.apply(&mut library).unwrap();
+        assert_eq!(library, words(&[7, 0x0605_00ff, 0, 650, 0x12_0000, 7]));
         assert_eq!(QUEST_2.apply(&mut words(&[1, 2, 3])), None);
     }
 

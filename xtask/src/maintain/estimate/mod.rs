@@ -1,7 +1,7 @@
 //! `cargo xtask maintain estimate`: what whole frames cost on mobile GPUs that are not here, and the shaders' own costs.
 //!
 //! The library builds all programs in a context on this machine, `shader-programs` of tests/ prints their texts, and
-//! [`Compilers`] compile them. The results are compared with `xtask/helpers/estimate/shader-cost.csv`, from which the
+//! [`Compilers`] compile them. The results are committed as `xtask/helpers/estimate/shader-cost.csv`, from which the
 //! program in that folder computes the cost of frames that it renders and counts. See docs/performance.md.
 
 mod compilers;
@@ -10,11 +10,9 @@ mod listing;
 mod patches;
 mod table;
 
-use std::collections::VecDeque;
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
-use std::sync::Mutex;
 use std::thread;
 
 use anyhow::{Context as _, bail, ensure};
@@ -79,8 +77,7 @@ pub struct Options {
     pub bless: bool,
 }
 
-/// Compiles programs, which are JSON as written by `shader-programs`, and compares the results with the table. Returns
-/// a text, and true if no program has a fault.
+/// Compiles programs, which are JSON as written by `shader-programs`. Returns a text, and true if no program has a fault.
 ///
 /// # Errors
 /// Fails if the compilers do not work, or no program matches the filter.
@@ -110,14 +107,7 @@ pub fn report(
         }
         found.mesa = run.mesa;
     }
-    let path = root().join(TABLE);
-    let committed = match fs::read_to_string(&path) {
-        Ok(text) => {
-            Table::parse(&text).with_context(|| format!("{TABLE} is damaged: restore it from git"))?
-        }
-        Err(_) => Table::default(),
-    };
-    let mut text = described(&gpus, &found, &committed) + "\n";
+    let mut text = described(&gpus, &found) + "\n";
     for finding in found.rows.iter().filter_map(judge) {
         match finding {
             Finding::Fault(fault) => faults.push(fault),
@@ -131,7 +121,13 @@ pub fn report(
         text += &format!("FAULT: {fault}\n");
     }
     if options.bless {
-        let mut table = committed;
+        let path = root().join(TABLE);
+        let mut table = match fs::read_to_string(&path) {
+            Ok(text) => {
+                Table::parse(&text).with_context(|| format!("{TABLE} is damaged: restore it from git"))?
+            }
+            Err(_) => Table::default(),
+        };
         // Rows of removed programs are only deleted if all programs have been compiled.
         table.rows.retain(|row| options.filter.is_some() || !gpus.iter().any(|gpu| gpu.name == row.gpu));
         table.mesa = found.mesa;
@@ -182,27 +178,13 @@ fn text_of(value: &Value, name: &str) -> String {
     value[name].as_str().unwrap_or_default().to_owned()
 }
 
-/// Compiles on all processors. Returns the runs in the order of the GPUs.
+/// Compiles for all GPUs at the same time, in a process each. Returns the runs in the order of the GPUs.
 fn compile(compilers: &Compilers, gpus: &[Gpu], programs: &Path) -> anyhow::Result<Vec<Run>> {
-    let waiting: Mutex<VecDeque<(usize, &Gpu)>> = Mutex::new(gpus.iter().enumerate().collect());
-    let done = Mutex::new(Vec::new());
-    let processors = thread::available_parallelism().map_or(1, usize::from);
     thread::scope(|scope| {
-        for _ in 0..processors.min(gpus.len()) {
-            scope.spawn(|| {
-                // A panic in another thread leaves the queue intact.
-                let next = || waiting.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop_front();
-                while let Some((place, gpu)) = next() {
-                    eprintln!("compiling for {}", gpu.title);
-                    let run = compilers.run(gpu, programs);
-                    done.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((place, run));
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
-    done.sort_by_key(|(place, _)| *place);
-    done.into_iter().map(|(_, run)| run).collect()
+        let start = |gpu| scope.spawn(move || compilers.run(gpu, programs));
+        let running: Vec<_> = gpus.iter().map(start).collect();
+        running.into_iter().map(|thread| thread.join().expect("no compiler panics")).collect()
+    })
 }
 
 /// Returns messages about programs that do not compile or link, or that crash the compiler.
@@ -257,13 +239,10 @@ fn stale<'a>(rows: &'a [Row]) -> impl Iterator<Item = &'static Exception> + 'a {
     })
 }
 
-/// Returns a paragraph per GPU, with a line for each shader and each change.
-fn described(gpus: &[Gpu], found: &Table, committed: &Table) -> String {
+/// Returns a paragraph per GPU, with a line for each shader.
+fn described(gpus: &[Gpu], found: &Table) -> String {
     let width = found.rows.iter().map(|row| row.program.len()).max().unwrap_or(0);
     let mut text = format!("Mesa {}; loops: issue slots/fetches of each body, once through\n", found.mesa);
-    if !committed.rows.is_empty() && committed.mesa != found.mesa {
-        text += &format!("{TABLE} was made by Mesa {}: changes are the compiler's, too\n", committed.mesa);
-    }
     for gpu in gpus {
         text += &format!(
             "\n{} ({})\n{:width$}  {:8} {:>6} {:>5} {:>6} {:>6} {:>7} {:>6}  {}\n",
@@ -282,7 +261,6 @@ fn described(gpus: &[Gpu], found: &Table, committed: &Table) -> String {
         for row in found.rows.iter().filter(|row| row.gpu == gpu.name) {
             let optional = |number: Option<u32>| number.map_or_else(|| "-".to_owned(), |n| n.to_string());
             let end = [row.loops.as_str(), row.cycles.as_str()].join("; ");
-            let old = committed.find(row);
             let line = format!(
                 "{:width$}  {:8} {:>6} {:>5} {:>6} {:>6} {:>7} {:>6}  {}",
                 row.program,
@@ -296,11 +274,7 @@ fn described(gpus: &[Gpu], found: &Table, committed: &Table) -> String {
                 end.trim_matches([';', ' ']),
             );
             text += line.trim_end();
-            text += if old.is_none() { "  (new)\n" } else { "\n" };
-            let change = old.map(|old| row.change_from(old)).filter(|change| !change.is_empty());
-            if let Some(change) = change {
-                text += &format!("{:width$}  {change}\n", "");
-            }
+            text += "\n";
         }
     }
     text
@@ -342,16 +316,6 @@ mod tests {
         assert_eq!(faults.len(), 2, "{faults:?}");
         assert!(faults[0].starts_with("b is refused on Mali-G52: 0:1: no"), "{}", faults[0]);
         assert!(faults[1].starts_with("c crashes"), "{}", faults[1]);
-    }
-
-    #[test]
-    fn a_change_stands_below_its_row() {
-        let (old, new) = (row("a650", "x.frag", 10, 0), row("a650", "x.frag", 8, 0));
-        let found = Table { mesa: "26".into(), rows: vec![new, row("a650", "y.frag", 16, 0)] };
-        let committed = Table { mesa: "25".into(), rows: vec![old] };
-        let text = described(&["a650".parse().unwrap()], &found, &committed);
-        assert!(text.contains("changes are the compiler's, too"), "{text}");
-        assert!(text.contains("  waves 10 -> 8\n") && text.contains("(new)\n"), "{text}");
     }
 
     #[test]

@@ -108,36 +108,6 @@ impl Row {
     fn key(&self) -> (&str, &str, &str) {
         (&self.gpu, &self.program, &self.stage)
     }
-
-    /// Returns the numbers that are compared, by name.
-    fn numbers(&self) -> [(&'static str, u32); 6] {
-        [
-            ("instructions", self.instructions),
-            ("registers", self.registers),
-            ("waves", self.waves),
-            ("lanes per wave", self.lanes_per_wave.unwrap_or(0)),
-            ("fetches", self.fetches.unwrap_or(0)),
-            ("spills", self.spills),
-        ]
-    }
-
-    /// Describes the differences from an older row, such as `instructions 437 -> 440, waves 10 -> 8`, if any.
-    pub fn change_from(&self, old: &Self) -> String {
-        let pairs = self.numbers().into_iter().zip(old.numbers());
-        let changes = pairs.filter(|((_, new), (_, old))| new != old);
-        let mut words: Vec<String> =
-            changes.map(|((name, new), (_, old))| format!("{name} {old} -> {new}")).collect();
-        for (name, new, old) in [("cycles", &self.cycles, &old.cycles), ("loops", &self.loops, &old.loops)] {
-            if new != old {
-                words.push(format!("{name} {} -> {}", or_none(old), or_none(new)));
-            }
-        }
-        words.join(", ")
-    }
-}
-
-fn or_none(text: &str) -> &str {
-    if text.is_empty() { "none" } else { text }
 }
 
 fn loops_text(loops: &[Loop]) -> String {
@@ -199,11 +169,6 @@ pub struct Table {
 }
 
 impl Table {
-    /// Returns the row of the same shader on the same GPU.
-    pub fn find(&self, row: &Row) -> Option<&Row> {
-        self.rows.iter().find(|old| old.key() == row.key())
-    }
-
     /// Adds rows, which replace those of the same shader and GPU, and sorts the table.
     pub fn take_over(&mut self, rows: impl IntoIterator<Item = Row>) {
         for row in rows {
@@ -285,15 +250,6 @@ pub mod tests {
         assert_eq!(Table::parse(&table.to_text()).unwrap(), table);
         let damaged = table.to_text().replace(",500,", ",many,");
         assert!(Table::parse(&damaged).unwrap_err().to_string().contains("many"));
-    }
-
-    #[test]
-    fn changes_are_listed_by_number() {
-        let (old, new) = (row("a650", "a", 10, 0), row("a650", "a", 8, 2));
-        assert_eq!(new.change_from(&old), "waves 10 -> 8, spills 0 -> 2");
-        let unrolled = Row { loops: String::new(), ..old.clone() };
-        assert_eq!(unrolled.change_from(&old), "loops 126/1 >71/2 -> none");
-        assert_eq!(old.change_from(&old), "");
     }
 
     #[test]

@@ -90,8 +90,13 @@ pub(crate) fn load_gltf(path: &Path, animation: Option<&str>) -> Result<Loaded, 
     if !meshes.iter().any(|m| m.material == materials.len() - 1) {
         materials.pop();
     }
+    let is_masked = meshes.is_empty() && wanted.iter().any(|material| material.invisible);
     let (mut model, placed) =
         assemble(path, meshes, materials).map_err(|error| match compression(&document) {
+            _ if is_masked => SceneError::unusable(
+                path,
+                "nothing of it can be seen: raise the opacity of its materials, or lower their alpha cutoff",
+            ),
             Some(extension) => SceneError::unusable(
                 path,
                 format!(

@@ -89,6 +89,9 @@ fn check_framebuffer(
     if outputs.depth && framebuffer.depth == Attachment::None {
         return Err(wrong("the framebuffer has no depth attachment, which YORO_OUTPUT_DEPTH writes"));
     }
+    if outputs.holes.is_open() && framebuffer.depth == Attachment::None {
+        return Err(wrong("the framebuffer has no depth attachment, which tells open pixels from others"));
+    }
     for &(texture, what) in textures {
         if [framebuffer.color, framebuffer.depth].contains(&Attachment::Texture(texture)) {
             return Err(wrong(format!(
@@ -105,8 +108,8 @@ fn check_framebuffer(
     let [width, height] = level.map_or([0, 0], |level| level.size);
     if width > 0 && (right > width || top > height) {
         return Err(wrong(format!(
-            "the rectangle ends at column {right} and row {top}, beyond the framebuffer's {width}x{height} pixels: see \
-             x and y of YoroGlImages"
+            "the rectangle ends at column {right} and row {top}, beyond the framebuffer's {width}x{height} pixels: give \
+             smaller x and y"
         )));
     }
     Ok(())
@@ -185,16 +188,24 @@ fn check_texture(
     };
     if level.is_known && level.size != size {
         let ([w, h], [x, y]) = (level.size, size);
-        return Err(wrong(format!(
-            "{what} has {w}x{h} pixels in place of {x}x{y}: render YoroViews.source, or give the textures' size as a part's"
-        )));
+        let remedy = match level_of(what) {
+            Some(name) => format!("give the texture's size as {name}_image_width and {name}_image_height"),
+            None => "render YoroViews.source, or give the textures' size as a part's".to_owned(),
+        };
+        return Err(wrong(format!("{what} has {w}x{h} pixels in place of {x}x{y}: {remedy}")));
     }
     if level.is_known && !fits(&level) {
+        let structure = if level_of(what).is_some() { "YoroGlLevels" } else { "YoroGlImages" };
         return Err(wrong(format!(
-            "{what} has a format or a number of layers that cannot be used here: see YoroGlImages"
+            "{what} has a format or a number of layers that cannot be used here: see {structure}"
         )));
     }
     Ok(())
+}
+
+/// Returns the level, wide or inset, whose texture has this name in `YoroGlLevels`; `None` for the names of `YoroGlImages`.
+fn level_of(what: &str) -> Option<&str> {
+    what.split_once('_').map(|(level, _)| level).filter(|level| ["wide", "inset"].contains(level))
 }
 
 struct TextureKind {

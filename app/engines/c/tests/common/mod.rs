@@ -11,6 +11,57 @@ use yoro_c::*;
 /// A change that makes an argument wrong, and the code that the function then returns.
 pub type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
 
+/// A fixed sequence of numbers that often reveal mistakes (SplitMix64).
+pub struct Random(pub u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    pub fn below(&mut self, limit: usize) -> usize {
+        (self.next() % limit as u64) as usize
+    }
+
+    pub fn pick<T: Copy>(&mut self, from: &[T]) -> T {
+        from[self.below(from.len())]
+    }
+
+    /// Returns a special number, an integer or a number between -2 and 2.
+    pub fn word(&mut self) -> u32 {
+        let special = [f32::NAN, f32::INFINITY, -1.0, f32::MAX, f32::MIN_POSITIVE].map(f32::to_bits);
+        match self.below(4) {
+            0 => self.pick(&special),
+            1 => self.pick(&[0, 1, 2, 7, u32::MAX, 1 << 20]),
+            2 => self.next() as u32,
+            _ => (self.below(4001) as f32 / 1000.0 - 2.0).to_bits(),
+        }
+    }
+
+    /// Returns a structure of which up to three words, behind the first bytes, are replaced. It has no pointers there, or
+    /// the caller replaces them.
+    pub fn damaged<T: Copy>(&mut self, value: &T, from: usize) -> T {
+        let mut copy = *value;
+        for _ in 0..self.below(4) {
+            let place = from + 4 * self.below((size_of::<T>() - from) / 4);
+            let word = self.word();
+            // SAFETY: the write stays within the structure, whose numbers may have any bits.
+            unsafe { (&raw mut copy).cast::<u8>().add(place).cast::<u32>().write_unaligned(word) };
+        }
+        copy
+    }
+}
+
+/// True for the results of wrong arguments: no fault of the library, of the driver or of the device.
+pub fn is_documented(code: YoroResult) -> bool {
+    let faults = [YORO_ERROR_DRIVER, YORO_ERROR_DEVICE_LOST, YORO_ERROR_INTERNAL, YORO_ERROR_BUSY];
+    (YORO_ERROR_INTERNAL..=YORO_OK).contains(&code) && !faults.contains(&code)
+}
+
 /// Returns a structure of zeros, which are valid for all structures of the interface, with its size set.
 pub fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
     // SAFETY: the structures have only numbers, handles and nullable pointers, for which zeros are valid.

@@ -11,6 +11,16 @@ pub enum DepthConvention {
     Reversed,
 }
 
+impl DepthConvention {
+    /// Returns the stored values of the near plane and of the far plane.
+    pub fn planes(self) -> [f32; 2] {
+        match self {
+            DepthConvention::Standard => [0.0, 1.0],
+            DepthConvention::Reversed => [1.0, 0.0],
+        }
+    }
+}
+
 /// Near and far plane (metres, along the viewing axis) and the encoding of depth between them. `far` may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -61,10 +71,7 @@ impl DepthRange {
 
     /// Returns the stored value of the far plane, to which the depth buffer is cleared.
     pub fn clear_value(&self) -> f32 {
-        match self.convention {
-            DepthConvention::Standard => 1.0,
-            DepthConvention::Reversed => 0.0,
-        }
+        self.convention.planes()[1]
     }
 }
 

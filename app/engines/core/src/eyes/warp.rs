@@ -50,10 +50,7 @@ impl Warp {
     /// Returns the displacements of the far plane and of the near plane in pixels, in forward columns, which increase
     /// in the direction in which nearer surfaces move.
     pub(crate) fn forward_displacements(&self) -> [f64; 2] {
-        let (near, far) = match self.convention {
-            DepthConvention::Standard => (0.0, 1.0),
-            DepthConvention::Reversed => (1.0, 0.0),
-        };
+        let [near, far] = self.convention.planes().map(f64::from);
         [far, near].map(|depth| {
             let displacement = self.law.displacement(depth);
             match self.target_eye {

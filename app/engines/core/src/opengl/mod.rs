@@ -16,8 +16,9 @@ mod composer;
 mod guessed_depth;
 mod pipeline;
 
-use crate::synthesis::Uniforms;
+use crate::eyes::DepthConvention;
 use crate::synthesis::backend::{Places, WarpKind, map_sizes};
+use crate::synthesis::{HoleMark, Holes, Uniforms};
 use yoro_gl::{Format, Image, Program};
 
 pub use composer::{Composer, InsetImage, LevelImage, LevelImages};
@@ -43,6 +44,8 @@ pub struct Outputs {
     /// ([`yoro_gl::Format::Srgb8Alpha8`]), which are decoded when they are sampled. Otherwise values are stored as they
     /// are sampled, without encoding. OpenGL ES without `EXT_sRGB_write_control` always encodes for sRGB targets.
     pub srgb: bool,
+    /// What becomes of holes; [`AnyView`] and [`Motion`] fill them.
+    pub holes: Holes,
 }
 
 impl Outputs {
@@ -53,7 +56,8 @@ impl Outputs {
 
     /// Returns the preprocessor defines that select these outputs in the last pass of a pipeline.
     pub fn defines(self) -> Vec<(&'static str, String)> {
-        defines([("WRITE_DEPTH", self.depth), ("SOURCE_MAP", self.source_map)])
+        let open = self.holes.is_open();
+        defines([("WRITE_DEPTH", self.depth), ("SOURCE_MAP", self.source_map), ("OPEN_HOLES", open)])
     }
 }
 
@@ -200,6 +204,25 @@ pub fn draw_target(gl: &Context, target: &Destination, outputs: Outputs) {
     gl.overwrite(target, outputs.draw_buffers() as usize, outputs.depth);
     gl.set_depth_write(outputs.depth);
     gl.draw_screen();
+    gl.set_depth_write(false);
+}
+
+/// Like [`draw_target`], for a march that leaves pixels open: marks those that it writes. `convention` is that of depth.
+fn draw_open(
+    gl: &Context,
+    target: &Destination,
+    outputs: Outputs,
+    mark: HoleMark,
+    convention: DepthConvention,
+) {
+    gl.overwrite(target, outputs.draw_buffers() as usize, false);
+    let [nearest, farthest] = convention.planes();
+    gl.clear_marks(target, farthest, mark == HoleMark::Stencil);
+    gl.set_depth_write(outputs.depth || mark == HoleMark::Depth);
+    match mark {
+        HoleMark::Stencil => gl.marking_stencil(|| gl.draw_screen()),
+        HoleMark::Depth => gl.marking_depth(nearest, || gl.draw_screen()),
+    }
     gl.set_depth_write(false);
 }
 

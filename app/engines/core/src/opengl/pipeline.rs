@@ -7,9 +7,10 @@ use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Image, Program, RenderTarget, ShaderSource, Touched,
 };
 
-use super::{Bloom, GlState, Options, Outputs, Source, draw_target, target_images};
+use super::{Bloom, GlState, Options, Outputs, Source, draw_open, draw_target, target_images};
 use crate::eyes::{MotionWarp, PoseWarp, Warp};
 use crate::synthesis::backend::{PerKind, UniformBlock as _, WarpKind, map_sizes};
+use crate::synthesis::{HoleMark, Holes};
 
 /// Synthesis between parallel eyes. The march follows the source's row.
 pub type Gather = Pipeline<Warp>;
@@ -52,6 +53,8 @@ pub type Motion = Pipeline<MotionWarp>;
 /// | active unit | 0 to 3 | changed |
 /// | scissor test (as the viewport), stencil and depth test, face culling | off; depth test on for the target if depth is written | off |
 /// | depth function, depth mask, depth range (as the viewport) | `ALWAYS`, on, 0 to 1 | as set |
+/// | with open holes: scissor box (as the viewport) | the target's rectangle | as set |
+/// | with holes marked by stencil: stencil function, operations and write mask, of both faces | `ALWAYS` 1, `REPLACE`, all bits | as set |
 /// | blending and colour mask, of draw buffer 0 and, with a source map, 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | as set |
 /// | dithering, polygon offset for filling, rasterizer discard, primitive restart (fixed index) | off | off |
 /// | alpha to coverage, sample coverage; sample mask (ES 3.1) | off | off |
@@ -61,8 +64,8 @@ pub type Motion = Pipeline<MotionWarp>;
 /// | polygon mode (desktop) | fill | fill |
 /// | alpha test, polygon stipple (compatibility profile) | off | off |
 ///
-/// Not touched: buffers bound to any target (vertex, uniform, storage, pixel pack and unpack), pixel store, scissor
-/// box, blend function and equation, stencil function, clear values, other texture targets and units. A pending error
+/// Not touched: buffers bound to any target (vertex, uniform, storage, pixel pack and unpack), pixel store, blend
+/// function and equation, clear values, other texture targets and units. A pending error
 /// stays, except in browsers, where allocating buffers reads GL's error flag. A program that the host deleted while it
 /// was current is destroyed, as GL specifies, when another one becomes current; `Preserve` then leaves no program
 /// current.
@@ -94,6 +97,7 @@ struct Shaders {
     macro_name: Option<&'static str>,
     writes_source_map: bool,
     adds_bloom: bool,
+    opens_holes: bool,
 }
 
 const GATHER: Shaders = Shaders {
@@ -105,6 +109,7 @@ const GATHER: Shaders = Shaders {
     macro_name: None,
     writes_source_map: true,
     adds_bloom: true,
+    opens_holes: true,
 };
 
 const ANY_VIEW: Shaders = Shaders {
@@ -116,6 +121,7 @@ const ANY_VIEW: Shaders = Shaders {
     macro_name: None,
     writes_source_map: false,
     adds_bloom: false,
+    opens_holes: false,
 };
 
 const MOTION: Shaders = Shaders {
@@ -124,6 +130,7 @@ const MOTION: Shaders = Shaders {
     march: "motion march",
     macro_name: Some("MOTION"),
     adds_bloom: false,
+    opens_holes: false,
     ..GATHER
 };
 
@@ -138,6 +145,12 @@ impl Shaders {
         if options.bloom && !self.adds_bloom {
             return refuse("only gather adds bloom");
         }
+        if outputs.holes.is_open() && !self.opens_holes {
+            return refuse("only gather leaves holes open");
+        }
+        if outputs.holes == Holes::Open(HoleMark::Depth) && outputs.depth {
+            return refuse("depth cannot both be written and mark what is written; mark it by stencil");
+        }
         Ok(())
     }
 }
@@ -146,8 +159,8 @@ impl<W: WarpKind> Pipeline<W> {
     /// Compiles the passes. Changes the same state as [`Pipeline::prepare`], or none with [`GlState::Preserve`].
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] for an [`AnyView`] with a source map, or for anything but a [`Gather`] with bloom;
-    /// [`GlError::Shader`] if the driver refuses a shader.
+    /// [`GlError::Unsupported`] for an [`AnyView`] with a source map, for anything but a [`Gather`] with bloom or open
+    /// holes, or if depth is both written and a mark; [`GlError::Shader`] if the driver refuses a shader.
     pub fn new(gl: &Rc<Context>, options: &Options, outputs: Outputs) -> Result<Pipeline<W>, GlError> {
         let shaders = W::of(&SHADERS);
         shaders.check(options, outputs)?;
@@ -247,7 +260,12 @@ impl<W: WarpKind> Pipeline<W> {
             if let Some(Bloom { texture, strength }) = bloom {
                 self.march.texture("bloom", 4, texture).set("bloom_strength", strength);
             }
-            draw_target(gl, target, self.outputs);
+            match (self.outputs.holes, warp.open_depth()) {
+                (Holes::Open(mark), Some(convention)) => {
+                    draw_open(gl, target, self.outputs, mark, convention)
+                }
+                _ => draw_target(gl, target, self.outputs),
+            }
         });
         gl.end_synthesis();
     }
@@ -263,7 +281,11 @@ pub(super) fn preserving<R>(
     if options.gl_state == GlState::Leave {
         return body();
     }
-    let touched = Touched { draw_buffers: outputs.draw_buffers(), arrays: options.array_textures };
+    let touched = Touched {
+        draw_buffers: outputs.draw_buffers(),
+        arrays: options.array_textures,
+        marks: outputs.holes.is_open(),
+    };
     let state = gl.save_state(touched);
     gl.set_first_unit();
     let result = body();

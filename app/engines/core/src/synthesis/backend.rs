@@ -6,7 +6,7 @@ use bytemuck::Pod;
 use super::error::ArgumentError;
 pub use super::error::{check_rectangle, check_size};
 use super::uniforms::{PoseUniforms, TILE, Uniforms};
-use crate::eyes::{MotionWarp, PoseWarp, Warp};
+use crate::eyes::{DepthConvention, MotionWarp, PoseWarp, Warp};
 
 /// The places of source and target in their images.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +71,11 @@ pub trait WarpKind: Copy {
         Ok(())
     }
 
+    /// Returns the convention of depth, for kinds that can leave holes open.
+    fn open_depth(&self) -> Option<DepthConvention> {
+        None
+    }
+
     /// Returns the width and height of the source and of the target in pixels.
     fn sizes(&self) -> [[u32; 2]; 2];
 
@@ -86,6 +91,10 @@ impl WarpKind for Warp {
 
     fn of<T>(values: &PerKind<T>) -> &T {
         &values.gather
+    }
+
+    fn open_depth(&self) -> Option<DepthConvention> {
+        Some(self.convention)
     }
 
     fn sizes(&self) -> [[u32; 2]; 2] {

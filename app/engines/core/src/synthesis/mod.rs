@@ -14,11 +14,13 @@
 pub mod backend;
 mod error;
 mod forward;
+mod holes;
 mod levels;
 mod source_map;
 mod uniforms;
 
 pub use error::ArgumentError;
+pub use holes::{HoleMark, Holes};
 pub use levels::LevelPlaces;
 pub use source_map::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE, SourceMapEntry};
 pub use uniforms::{LevelUniforms, PoseUniforms, Uniforms};

@@ -2,9 +2,10 @@
 
 use ash::vk;
 
-use super::formats::is_depth;
+use super::formats::{aspects, is_depth};
 use super::{Host, Options, VulkanError};
 use crate::synthesis::backend::check_size;
+use crate::synthesis::{HoleMark, Holes};
 
 /// A physical device and its properties.
 pub(super) struct Adapter {
@@ -54,7 +55,7 @@ impl Adapter {
             }
             self.check_format(format, attachment, role)?;
         }
-        Ok(())
+        check_holes(options)
     }
 
     pub(super) fn check_image_size(&self, what: &'static str, size: [u32; 2]) -> Result<(), VulkanError> {
@@ -75,5 +76,20 @@ impl Adapter {
         } else {
             Err(VulkanError::Format { format, role })
         }
+    }
+}
+
+/// Checks that open holes can be marked.
+fn check_holes(options: &Options) -> Result<(), VulkanError> {
+    let aspects = options.depth_format.map_or(vk::ImageAspectFlags::empty(), aspects);
+    let refuse = |what| Err(VulkanError::Holes(what));
+    match options.holes {
+        Holes::Open(HoleMark::Stencil) if !aspects.contains(vk::ImageAspectFlags::STENCIL) => refuse(
+            "the depth format has no stencil for the mark; choose D32_SFLOAT_S8_UINT or D24_UNORM_S8_UINT",
+        ),
+        Holes::Open(HoleMark::Depth) if aspects.is_empty() => {
+            refuse("there is no depth for the mark; give a depth format")
+        }
+        _ => Ok(()),
     }
 }

@@ -60,14 +60,15 @@ impl<'a> Commands<'a> {
     }
 
     /// Draws a triangle that covers `area`. Must be called inside a render pass or dynamic rendering.
-    pub(super) fn draw(&self, pipeline: vk::Pipeline, area: vk::Rect2D) {
+    /// `depth` is the range of depth that the viewport maps to.
+    pub(super) fn draw(&self, pipeline: vk::Pipeline, area: vk::Rect2D, depth: [f32; 2]) {
         let viewport = vk::Viewport {
             x: area.offset.x as f32,
             y: area.offset.y as f32,
             width: area.extent.width as f32,
             height: area.extent.height as f32,
-            min_depth: 0.0,
-            max_depth: 1.0,
+            min_depth: depth[0],
+            max_depth: depth[1],
         };
         let (device, buffer) = (self.device, self.buffer);
         // SAFETY: `Commands::new` asks for a recording buffer and live handles.

@@ -288,7 +288,7 @@ impl Composer {
         commands.bind(self.layouts.pipeline, levels.textures, &uniforms);
         commands.group(c"yoro compose", || {
             let area = area(frame.target_origin, composition.size);
-            self.rendering.draw(&commands, &target.attachments, self.pipeline, area);
+            self.rendering.draw(&commands, &target.attachments, self.pipeline, area, None);
         });
         let mut barriers = Barriers::new();
         images().for_each(|(image, state)| barriers.registered(&image, state, image.after));

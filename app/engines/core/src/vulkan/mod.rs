@@ -59,8 +59,8 @@ pub use ash;
 use ash::vk;
 
 use crate::eyes::{PoseWarp, Warp};
-use crate::synthesis::ArgumentError;
 use crate::synthesis::backend::{WarpKind, map_sizes};
+use crate::synthesis::{ArgumentError, Holes};
 
 pub use composer::{ComposedFrame, Composer, InsetImage, LevelImage, LevelImages};
 pub use pipeline::{AnyView, Gather, Motion, Pipeline};
@@ -117,6 +117,9 @@ pub enum VulkanError {
         "the device has no vkCmdBeginRendering; enable the feature dynamicRendering, or leave dynamic_rendering off"
     )]
     DynamicRendering,
+    /// These options do not go with [`Options::holes`].
+    #[error("holes cannot be left open here: {0}")]
+    Holes(&'static str),
     /// A size or a rectangle does not fit the images, [`Options`] or the device.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
@@ -171,6 +174,10 @@ pub struct Options {
     pub color_format: vk::Format,
     /// Format of the targets' depth, which is written in the source's encoding; `None` for colour only.
     pub depth_format: Option<vk::Format>,
+    /// What becomes of holes, which only a [`Gather`] can leave open. The depth attachment is then cleared to the farthest, in
+    /// the target's rectangle, and stencil to 0 if it is the mark. With [`HoleMark::Depth`](crate::synthesis::HoleMark::Depth), depth is
+    /// the mark and nothing else.
+    pub holes: Holes,
     /// The largest size of a source in pixels. Smaller sources need no new pipelines or buffers. The source's size
     /// follows from the eyes' distance and frusta: take it from a pair with the largest distance, and add a margin.
     pub max_source_size: [u32; 2],
@@ -206,6 +213,7 @@ impl Default for Options {
         Options {
             color_format: vk::Format::R8G8B8A8_UNORM,
             depth_format: None,
+            holes: Holes::Filled,
             max_source_size: [2048; 2],
             max_target_size: [2048; 2],
             timed_frames: 0,
@@ -315,7 +323,7 @@ impl SourceImages {
 pub struct TargetImages {
     /// Colour, in [`Options::color_format`].
     pub color: LayerImage,
-    /// Depth, in [`Options::depth_format`]. A stencil aspect is not changed.
+    /// Depth, in [`Options::depth_format`]. A stencil aspect is not changed, unless holes are left open.
     pub depth: Option<LayerImage>,
     /// Width and height of the images in pixels; the target may be a part of them.
     pub size: [u32; 2],

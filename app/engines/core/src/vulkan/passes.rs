@@ -9,7 +9,7 @@ use super::commands::Commands;
 use super::objects::Objects;
 use super::pipelines::{PipelineFactory, Pipelines};
 use super::shaders::Shaders;
-use super::targets::{Attachments, Intermediate, PassKind, Rendering};
+use super::targets::{Attachments, Intermediate, Marks, PassKind, Rendering};
 use super::timer::{Stamp, Timer};
 use super::{ImageState, Options, VulkanError};
 use crate::synthesis::backend::{WarpKind, map_sizes};
@@ -56,7 +56,7 @@ impl Passes {
             PipelineFactory { objects, modules, rendering: &rendering, layout, options, march_vertex };
         let tile_pipelines = factory.pipelines(shaders.tiles, PassKind::Map)?;
         let spans_pipeline = factory.pipeline(shaders.spans, PassKind::Map, false)?;
-        let march = factory.pipelines(shaders.march(options.depth_format.is_some()), PassKind::Target)?;
+        let march = factory.pipelines(shaders.march(options)?, PassKind::Target)?;
         drop(factory);
 
         let mut map = |size| Intermediate::new(objects, &rendering, memory, size);
@@ -88,7 +88,7 @@ impl Recorder<'_> {
     /// Records a pass whose result the next passes read.
     fn intermediate(&self, name: &CStr, pipeline: vk::Pipeline, into: &Intermediate, size: [u32; 2]) {
         self.commands.group(name, || {
-            self.rendering.draw(&self.commands, &into.attachments, pipeline, area([0, 0], size));
+            self.rendering.draw(&self.commands, &into.attachments, pipeline, area([0, 0], size), None);
             let mut barriers = Barriers::new();
             barriers.intermediate(into.image, ImageState::COLOR_ATTACHMENT, ImageState::SAMPLED);
             barriers.record(&self.commands);
@@ -121,11 +121,17 @@ impl SpansPass {
 }
 
 impl MarchPass {
-    /// `origin` and `size` are the target's rectangle in pixels.
-    pub(super) fn record(&self, recorder: &Recorder, target: &Attachments, origin: [u32; 2], size: [u32; 2]) {
+    /// `area` is the target's rectangle in pixels.
+    pub(super) fn record(
+        &self,
+        recorder: &Recorder,
+        target: &Attachments,
+        area: vk::Rect2D,
+        marks: Option<Marks>,
+    ) {
         recorder.commands.group(c"yoro march", || {
             let pipeline = self.pipelines.get(recorder.part);
-            recorder.rendering.draw(&recorder.commands, target, pipeline, area(origin, size));
+            recorder.rendering.draw(&recorder.commands, target, pipeline, area, marks);
         });
     }
 }

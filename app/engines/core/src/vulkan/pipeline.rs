@@ -11,15 +11,16 @@ use super::commands::{Commands, Labels};
 use super::formats::{components, map_bytes};
 use super::images::{self, Source, Target};
 use super::objects::Objects;
-use super::passes::{Passes, Recorder};
+use super::passes::{Passes, Recorder, area};
 use super::pipelines::{FILTERED, Layouts};
-use super::targets::Rendering;
+use super::targets::{Marks, Rendering};
 use super::timer::{Stamp, Timer};
 use super::{
     Frame, Host, ImageState, Options, PassTimes, SourceId, SourceImages, TargetId, TargetImages, Uses,
     VulkanError,
 };
 use crate::eyes::{MotionWarp, PoseWarp, Warp};
+use crate::synthesis::Holes;
 use crate::synthesis::backend::{Places, WarpKind, check_rectangle, check_size, map_sizes};
 
 /// Synthesis between parallel eyes: the march goes along the source's row.
@@ -61,7 +62,7 @@ impl<W: WarpKind> Pipeline<W> {
     /// Creates everything that does not depend on the images: pipelines and intermediate buffers.
     ///
     /// # Errors
-    /// [`VulkanError::Format`], [`VulkanError::Argument`], [`VulkanError::QueueFamily`] and
+    /// [`VulkanError::Format`], [`VulkanError::Argument`], [`VulkanError::Holes`], [`VulkanError::QueueFamily`] and
     /// [`VulkanError::DynamicRendering`] for what the device does not support; errors of Vulkan's commands.
     ///
     /// # Safety
@@ -241,7 +242,12 @@ impl<W: WarpKind> Pipeline<W> {
         recorder.stamp(Stamp::Tiles);
         passes.spans.record(&recorder, span_size);
         recorder.stamp(Stamp::Spans);
-        passes.march.record(&recorder, &target.attachments, frame.target_origin, target_size);
+        let marks = match (self.options.holes, warp.open_depth()) {
+            (Holes::Open(mark), Some(convention)) => Some(Marks { mark, planes: convention.planes() }),
+            _ => None,
+        };
+        let area = area(frame.target_origin, target_size);
+        passes.march.record(&recorder, &target.attachments, area, marks);
         recorder.stamp(Stamp::March);
         release_images(&commands, source, target, uses);
 

@@ -6,6 +6,7 @@ use super::commands::UNIFORM_STAGES;
 use super::objects::Objects;
 use super::targets::{PassKind, Rendering};
 use super::{Options, VulkanError, shaders};
+use crate::synthesis::{HoleMark, Holes};
 
 /// Bindings of the descriptor set, in the order of `TEXTURE` in the shaders: depth, colour, tile map, span map.
 pub(super) const TEXTURES: usize = 4;
@@ -144,6 +145,16 @@ impl PipelineFactory<'_> {
             .depth_test_enable(depth_format.is_some())
             .depth_write_enable(depth_format.is_some())
             .depth_compare_op(vk::CompareOp::ALWAYS);
+        let marks = kind == PassKind::Target && self.options.holes == Holes::Open(HoleMark::Stencil);
+        let replace = vk::StencilOpState {
+            pass_op: vk::StencilOp::REPLACE,
+            compare_op: vk::CompareOp::ALWAYS,
+            compare_mask: 0xff,
+            write_mask: 0xff,
+            reference: 1,
+            ..vk::StencilOpState::default()
+        };
+        let depth = depth.stencil_test_enable(marks).front(replace).back(replace);
         let blend =
             [vk::PipelineColorBlendAttachmentState::default()
                 .color_write_mask(vk::ColorComponentFlags::RGBA)];
@@ -164,7 +175,12 @@ impl PipelineFactory<'_> {
         let formats = [format];
         let mut attachments = vk::PipelineRenderingCreateInfo::default()
             .color_attachment_formats(&formats)
-            .depth_attachment_format(depth_format.unwrap_or_default());
+            .depth_attachment_format(depth_format.unwrap_or_default())
+            .stencil_attachment_format(if marks {
+                depth_format.unwrap_or_default()
+            } else {
+                vk::Format::UNDEFINED
+            });
         let info = match self.rendering {
             Rendering::Dynamic { .. } => info.push_next(&mut attachments),
             Rendering::Passes { .. } => info.render_pass(self.rendering.render_pass(kind)),

@@ -1,6 +1,8 @@
 //! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain renew`.
 
+use super::{Options, VulkanError};
 use crate::synthesis::backend::{PerKind, WarpKind};
+use crate::synthesis::{HoleMark, Holes};
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
 pub(super) const COMPOSE: &[u8] = include_bytes!("spirv/compose.spv");
@@ -17,6 +19,8 @@ pub(super) struct Shaders {
     march: &'static [u8],
     /// The last pass, writing depth, too.
     march_depth: &'static [u8],
+    /// The last pass with open holes, without depth and writing depth.
+    march_open: Option<[&'static [u8]; 2]>,
 }
 
 const GATHER: Shaders = Shaders {
@@ -25,11 +29,13 @@ const GATHER: Shaders = Shaders {
     march_vertex: include_bytes!("spirv/march-vertex.spv"),
     march: include_bytes!("spirv/march.spv"),
     march_depth: include_bytes!("spirv/march-depth.spv"),
+    march_open: Some([include_bytes!("spirv/march-open.spv"), include_bytes!("spirv/march-open-depth.spv")]),
 };
 
 const MOTION: Shaders = Shaders {
     march: include_bytes!("spirv/march-motion.spv"),
     march_depth: include_bytes!("spirv/march-motion-depth.spv"),
+    march_open: None,
     ..GATHER
 };
 
@@ -39,6 +45,7 @@ const ANY_VIEW: Shaders = Shaders {
     march_vertex: SCREEN,
     march: include_bytes!("spirv/any-view-march.spv"),
     march_depth: include_bytes!("spirv/any-view-march-depth.spv"),
+    march_open: None,
 };
 
 static SHADERS: PerKind<Shaders> = PerKind { gather: GATHER, motion: MOTION, any_view: ANY_VIEW };
@@ -49,8 +56,15 @@ impl Shaders {
     }
 
     /// Returns the last pass.
-    pub(super) fn march(&self, depth: bool) -> &'static [u8] {
-        if depth { self.march_depth } else { self.march }
+    pub(super) fn march(&self, options: &Options) -> Result<&'static [u8], VulkanError> {
+        match options.holes {
+            Holes::Filled if options.depth_format.is_some() => Ok(self.march_depth),
+            Holes::Filled => Ok(self.march),
+            Holes::Open(mark) => {
+                let open = self.march_open.ok_or(VulkanError::Holes("only Gather can; fill them"))?;
+                Ok(open[usize::from(mark == HoleMark::Stencil)])
+            }
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use super::commands::{Commands, has_command};
 use super::formats;
 use super::objects::Objects;
 use super::{Host, ImageState, Options, VulkanError};
+use crate::synthesis::{HoleMark, Holes};
 
 /// The kinds of attachments that passes draw into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +52,33 @@ pub(super) struct Attachments {
     depth: Option<vk::ImageView>,
     framebuffer: vk::Framebuffer,
 }
+
+/// How a pass marks the pixels that it writes, in an area that is cleared.
+#[derive(Clone, Copy)]
+pub(super) struct Marks {
+    pub(super) mark: HoleMark,
+    /// Depths of the near plane and of the far plane.
+    pub(super) planes: [f32; 2],
+}
+
+impl Marks {
+    /// Returns the values that the attachments are cleared to. That of colour is not used.
+    fn clear_values(self) -> [vk::ClearValue; 2] {
+        let depth_stencil = vk::ClearDepthStencilValue { depth: self.planes[1], stencil: 0 };
+        [vk::ClearValue::default(), vk::ClearValue { depth_stencil }]
+    }
+
+    /// Returns the range of depth that the viewport maps to.
+    fn depths(self) -> [f32; 2] {
+        match self.mark {
+            HoleMark::Stencil => WHOLE_DEPTH,
+            HoleMark::Depth => [self.planes[0]; 2],
+        }
+    }
+}
+
+/// The viewport's depths, unless depth is a mark.
+const WHOLE_DEPTH: [f32; 2] = [0.0, 1.0];
 
 /// The result of a pass that later passes read.
 pub(super) struct Intermediate {
@@ -137,24 +165,28 @@ impl Rendering {
         attachments: &Attachments,
         pipeline: vk::Pipeline,
         area: vk::Rect2D,
+        marks: Option<Marks>,
     ) {
+        let depths = marks.map_or(WHOLE_DEPTH, Marks::depths);
+        let clear = marks.map(Marks::clear_values);
         // SAFETY: `Commands::new` asks for a buffer that records outside of render passes, and for live handles. What
-        // begins here ends here. Nothing is cleared, so that clear values are not needed.
+        // begins here ends here. A pass that clears has clear values.
         unsafe {
             match *self {
                 Rendering::Dynamic { begin, end } => {
-                    attachments.begin_dynamic(begin, commands.buffer, area);
-                    commands.draw(pipeline, area);
+                    attachments.begin_dynamic(begin, commands.buffer, area, marks);
+                    commands.draw(pipeline, area, depths);
                     end(commands.buffer);
                 }
                 Rendering::Passes { .. } => {
                     let info = vk::RenderPassBeginInfo::default()
                         .render_pass(self.render_pass(attachments.kind))
                         .framebuffer(attachments.framebuffer)
-                        .render_area(area);
+                        .render_area(area)
+                        .clear_values(clear.as_ref().map_or(&[], |values| &values[..]));
                     let contents = vk::SubpassContents::INLINE;
                     commands.device.cmd_begin_render_pass(commands.buffer, &info, contents);
-                    commands.draw(pipeline, area);
+                    commands.draw(pipeline, area, depths);
                     commands.device.cmd_end_render_pass(commands.buffer);
                 }
             }
@@ -170,6 +202,7 @@ impl Attachments {
         begin: vk::PFN_vkCmdBeginRendering,
         buffer: vk::CommandBuffer,
         area: vk::Rect2D,
+        marks: Option<Marks>,
     ) {
         let attachment = |view, state: ImageState| {
             vk::RenderingAttachmentInfo::default()
@@ -179,18 +212,24 @@ impl Attachments {
                 .store_op(vk::AttachmentStoreOp::STORE)
         };
         let colors = [attachment(self.color, ImageState::COLOR_ATTACHMENT)];
-        let depth = attachment(self.depth.unwrap_or_default(), ImageState::DEPTH_ATTACHMENT);
+        let mut depth = attachment(self.depth.unwrap_or_default(), ImageState::DEPTH_ATTACHMENT);
+        if let Some([_, clear]) = marks.map(Marks::clear_values) {
+            depth = depth.load_op(vk::AttachmentLoadOp::CLEAR).clear_value(clear);
+        }
         let info = vk::RenderingInfo::default()
             .render_area(area)
             .layer_count(1)
             .color_attachments(&colors)
             .depth_attachment(&depth);
+        let stencils = marks.is_some_and(|marks| marks.mark == HoleMark::Stencil);
+        let info = if stencils { info.stencil_attachment(&depth) } else { info };
         // SAFETY: the caller's buffer and command; the description names live views.
         unsafe { begin(buffer, &info) };
     }
 }
 
-/// Returns a render pass that changes no layouts and keeps the stencil contents.
+/// Returns a render pass that changes no layouts and keeps the stencil contents, or clears depth, and stencil if it is a
+/// mark.
 fn render_pass(
     objects: &mut Objects,
     kind: PassKind,
@@ -208,7 +247,15 @@ fn render_pass(
             .final_layout(state.layout)
     };
     let color = attachment(kind.format(options), ImageState::COLOR_ATTACHMENT);
-    let depth = kind.depth_format(options).map(|format| attachment(format, ImageState::DEPTH_ATTACHMENT));
+    let depth = kind.depth_format(options).map(|format| {
+        let depth = attachment(format, ImageState::DEPTH_ATTACHMENT);
+        let clear = vk::AttachmentLoadOp::CLEAR;
+        match options.holes {
+            Holes::Filled => depth,
+            Holes::Open(HoleMark::Depth) => depth.load_op(clear),
+            Holes::Open(HoleMark::Stencil) => depth.load_op(clear).stencil_load_op(clear),
+        }
+    });
     let attachments: Vec<_> = [color].into_iter().chain(depth).collect();
     let reference =
         |attachment, state: ImageState| vk::AttachmentReference { attachment, layout: state.layout };

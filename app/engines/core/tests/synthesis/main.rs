@@ -2,6 +2,7 @@
 
 mod any_view;
 mod guessed_depth;
+mod holes;
 mod host;
 mod levels;
 mod motion;
@@ -238,6 +239,7 @@ fn the_shaders_of_es_3_0_draw_the_same_picture() {
     assert!(draw(open_es_300()) == draw(Headless::open(Backend::Egl).unwrap()));
 }
 
+/// Boxes as near as 5 cm in front of a slanted wall.
 fn near_boxes(size: [u32; 2], range: DepthRange, seed: u64, boxes: u32) -> (Vec<u8>, Vec<f32>) {
     let [w, h] = size.map(|n| n as usize);
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);

@@ -9,6 +9,7 @@ use super::laws::{on_every_backend, open_es_300, pair, scene};
 use super::state::snapshot;
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
 use yoro::opengl::{Context, Destination, Gather, GlState, Options, Outputs, Part, Source, buffer_bytes};
+use yoro::synthesis::Holes;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Filter, Format, RenderTarget};
 
@@ -102,7 +103,7 @@ fn run(gl: &Rc<Context>, gather: &mut Gather, source: Source, warp: &Warp) -> (V
     (target.read_rgba8(0, [0, 0], warp.target_size), target.read_u32(1, [0, 0], warp.target_size))
 }
 
-const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };
+const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false, holes: Holes::Filled };
 
 /// Checks that two pictures are equal, except for a few pixels whose positions lie within rounding of a decision.
 /// Columns differ by a thousandth of a pixel at most.

@@ -15,13 +15,16 @@ pub struct Entry {
     away: Option<f64>,
     /// A silhouette in front: its column, and the share of the pixel that it covers.
     rim: Option<(usize, f64)>,
+    /// True if a pipeline with open holes leaves the pixel open.
+    pub open: bool,
 }
 
 impl Entry {
-    fn new(column: f64, away: Option<f64>, rim: Option<(usize, f64)>) -> Entry {
+    fn new(column: f64, away: Option<f64>, rim: Option<(usize, f64)>, outermost: bool) -> Entry {
         let is_covered = rim.filter(|(_, coverage)| *coverage >= 0.5);
         let source = is_covered.map_or(column, |(x, _)| x as f64);
-        Entry { hole: away.is_some() && is_covered.is_none(), source, column, away, rim }
+        let open = away.is_some() || rim.is_some() || outermost;
+        Entry { hole: away.is_some() && is_covered.is_none(), source, column, away, rim, open }
     }
 
     /// True if the colour is a mean of several surfaces or samples.
@@ -108,6 +111,14 @@ impl Picture<'_> {
 
 const MAX_STRETCH: f64 = 2.0;
 
+/// True if the neighbour before a column, or the one after it, is farther by more than a pixel of displacement.
+fn ends(p: &[f64], x: usize, after: bool) -> bool {
+    match after {
+        false => x > 0 && p[x] - p[x - 1] >= MAX_STRETCH,
+        true => p.get(x + 1).is_some_and(|next| *next < p[x]),
+    }
+}
+
 /// Runs the gather pipeline's march for each target pixel, over the whole row.
 pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
     (0..width)
@@ -115,6 +126,8 @@ pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
             let target = t as f64;
             let mut rim = None;
             let mut hit = None;
+            // True if the surface that is hit ends at one of the columns that make the pixel's colour.
+            let mut outermost = false;
             let mut edge = if p[0] > target { Some((p[0], 0)) } else { None };
             if p[0] > target && p[0] - target <= 0.5 {
                 hit = Some(0.0);
@@ -130,6 +143,7 @@ pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
                 if b > target {
                     if b - a < MAX_STRETCH {
                         hit = Some((x - 1) as f64 + (target - a) / (b - a));
+                        outermost = ends(p, x - 1, false) || ends(p, x, true);
                         continue;
                     }
                     if b - target < 1.0 {
@@ -138,6 +152,7 @@ pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
                     let displacement = a - (x - 1) as f64;
                     if target - a < 0.5 {
                         hit = Some((x - 1) as f64);
+                        outermost = ends(p, x - 1, false);
                     } else if edge.is_none_or(|(d, _)| displacement < d) {
                         edge = Some((displacement, x - 1));
                     }
@@ -148,9 +163,11 @@ pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
             let last = p.len() - 1;
             let away = |x: usize| (p[x] - target).abs();
             match (hit, edge) {
-                (Some(column), _) => Entry::new(column, None, rim),
-                (None, Some((_, x))) => Entry::new(x as f64, Some(away(x)), rim),
-                (None, None) => Entry::new(last as f64, Some(away(last)).filter(|away| *away >= 0.5), rim),
+                (Some(column), _) => Entry::new(column, None, rim, outermost),
+                (None, Some((_, x))) => Entry::new(x as f64, Some(away(x)), rim, false),
+                (None, None) => {
+                    Entry::new(last as f64, Some(away(last)).filter(|away| *away >= 0.5), rim, false)
+                }
             }
         })
         .collect()

@@ -7,16 +7,24 @@ use glow::HasContext;
 use super::laws::{on_every_backend, pair, scene};
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
 use yoro::opengl::{Context, Destination, Gather, GlApi, GlState, Options, Outputs, Source};
+use yoro::synthesis::{HoleMark, Holes};
 use yoro_gl::{Filter, Format, RenderTarget, Texture};
 
-pub const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: false };
+pub const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: false, holes: Holes::Filled };
 /// GL_DEPTH_BOUNDS_TEST_EXT.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
 
 /// Compiles the pipeline with [`OUTPUTS`].
 pub fn gather(gl: &Rc<Context>, gl_state: GlState) -> Gather {
-    Gather::new(gl, &Options { gl_state, ..Options::default() }, OUTPUTS).unwrap()
+    gather_with(gl, gl_state, Holes::Filled)
 }
+
+fn gather_with(gl: &Rc<Context>, gl_state: GlState, holes: Holes) -> Gather {
+    Gather::new(gl, &Options { gl_state, ..Options::default() }, Outputs { holes, ..OUTPUTS }).unwrap()
+}
+
+/// Every way to treat holes that writes depth.
+const HOLES: [Holes; 2] = [Holes::Filled, Holes::Open(HoleMark::Stencil)];
 
 pub fn warp(size: [u32; 2]) -> Warp {
     let eyes = pair(size, Eye::Right, 0.063, DepthConvention::Standard);
@@ -57,7 +65,8 @@ impl Lent {
             }
         }
         let formats = [(color, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
-        let target = RenderTarget::new(gl, warp.target_size, &formats, Some(Format::Depth32F)).unwrap();
+        let target =
+            RenderTarget::new(gl, warp.target_size, &formats, Some(Format::Depth32FStencil8)).unwrap();
         Lent { color: color_texture, depth: depth_texture, target, warp, rgba }
     }
 
@@ -381,6 +390,9 @@ pub fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
             (glow::RENDERBUFFER_BINDING, 1),
             (glow::SAMPLE_COVERAGE_INVERT, 1),
             (glow::SCISSOR_BOX, 4),
+            (glow::STENCIL_BACK_FUNC, 1),
+            (glow::STENCIL_BACK_PASS_DEPTH_PASS, 1),
+            (glow::STENCIL_BACK_WRITEMASK, 1),
             (glow::STENCIL_FUNC, 1),
             (glow::STENCIL_FAIL, 1),
             (glow::STENCIL_REF, 1),
@@ -446,22 +458,28 @@ pub fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
 fn pictures_do_not_depend_on_the_hosts_state() {
     on_every_backend(|gl| {
         let lent = Lent::new(gl, [97, 31], Format::Rgba8);
-        clean(gl);
-        let run = |gl_state| {
-            gather(gl, gl_state).synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-        };
-        run(GlState::Leave);
-        let want = lent.picture(gl);
-        assert!(want.0.iter().any(|v| *v > 200) && want.2.iter().any(|v| *v != want.2[0]), "a picture");
-
         let hostile = Hostile::new(gl);
-        for gl_state in [GlState::Leave, GlState::Preserve] {
-            lent.target.bind();
-            gl.clear(Some(0.5));
-            hostile.set(gl);
-            run(gl_state);
-            assert_eq!(gl.take_errors(), None);
-            assert!(lent.picture(gl) == want, "{gl_state:?}");
+        for holes in HOLES {
+            let run = |gl_state| {
+                let mut gather = gather_with(gl, gl_state, holes);
+                gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+            };
+            let blank = || {
+                clean(gl);
+                lent.target.bind();
+                gl.clear(Some(0.5));
+            };
+            blank();
+            run(GlState::Leave);
+            let want = lent.picture(gl);
+            assert!(want.0.iter().any(|v| *v > 200) && want.2.iter().any(|v| *v != want.2[0]), "a picture");
+            for gl_state in [GlState::Leave, GlState::Preserve] {
+                blank();
+                hostile.set(gl);
+                run(gl_state);
+                assert_eq!(gl.take_errors(), None);
+                assert!(lent.picture(gl) == want, "{holes:?}, {gl_state:?}");
+            }
         }
         hostile.delete(gl);
     });
@@ -478,18 +496,20 @@ fn the_hosts_state_is_preserved() {
                 hostile.set(gl);
             }
             let before = snapshot(gl);
-            let mut gather = gather(gl, GlState::Preserve);
-            assert_eq!(snapshot(gl), before, "create");
-            gather.prepare(&small.warp).unwrap();
-            assert_eq!(snapshot(gl), before, "prepare");
-            // The second size allocates; the third call does not.
-            for lent in [&small, &large, &large] {
-                gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-                assert_eq!(snapshot(gl), before, "synthesize");
+            for holes in HOLES {
+                let mut gather = gather_with(gl, GlState::Preserve, holes);
+                assert_eq!(snapshot(gl), before, "create");
+                gather.prepare(&small.warp).unwrap();
+                assert_eq!(snapshot(gl), before, "prepare");
+                // The second size allocates; the third call does not.
+                for lent in [&small, &large, &large] {
+                    gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+                    assert_eq!(snapshot(gl), before, "synthesize, {holes:?}");
+                }
+                let beyond = Warp { target_size: [u32::MAX; 2], source_size: [u32::MAX; 2], ..small.warp };
+                assert!(gather.prepare(&beyond).is_err());
+                assert_eq!(snapshot(gl), before, "a call that fails");
             }
-            let beyond = Warp { target_size: [u32::MAX; 2], source_size: [u32::MAX; 2], ..small.warp };
-            assert!(gather.prepare(&beyond).is_err());
-            assert_eq!(snapshot(gl), before, "a call that fails");
         }
         // Colour masks of single draw buffers, tested by what they let through.
         let raw = gl.raw();

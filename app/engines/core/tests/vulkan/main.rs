@@ -1,7 +1,11 @@
 //! Pictures of the Vulkan passes equal those of the OpenGL passes, under the validation layer.
 
 mod failures;
+mod holes;
 mod levels;
+#[path = "../synthesis/reference.rs"]
+#[expect(dead_code, reason = "the colours of filled holes are OpenGL's")]
+mod reference;
 mod resolved;
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -3,6 +3,7 @@
 use std::ffi::{CStr, c_char};
 
 use openxr_sys as sys;
+use sys::pfn;
 
 use super::{get_instance_proc_addr, sessions, without_panic};
 use crate::dispatch::{Dispatch, XrResult, check};
@@ -50,8 +51,12 @@ unsafe extern "system" fn create_api_layer_instance(
     layer: *const sys::ApiLayerCreateInfo,
     handle: *mut sys::Instance,
 ) -> sys::Result {
-    // SAFETY: the loader's structures.
-    without_panic(|| unsafe { create_instance(&*info, &*layer, handle) })
+    // SAFETY: null, or the loader's structures.
+    without_panic(|| match unsafe { (info.as_ref(), layer.as_ref()) } {
+        // SAFETY: as above.
+        (Some(info), Some(layer)) => unsafe { create_instance(info, layer, handle) },
+        _ => Err(sys::Result::ERROR_VALIDATION_FAILURE),
+    })
 }
 
 /// Creates the instance of the next layer or the runtime, and keeps what the layer needs of it.
@@ -92,7 +97,7 @@ unsafe fn create_instance(
         }
         check(result)?;
         let handle = *handle;
-        let dispatch = Dispatch::new(next, handle)?;
+        let dispatch = Dispatch::new(next, handle).inspect_err(|_| destroy(next, handle))?;
         let name = text(&info.application_info.application_name);
         let (settings, errors) = Settings::of(&name);
         for error in errors {
@@ -108,6 +113,21 @@ unsafe fn create_instance(
         let serves = graphics && !left_alone;
         objects::add_instance(Instance::new(handle, dispatch, settings, name, serves, takes_depth));
         Ok(result)
+    }
+}
+
+/// Destroys an instance that lacks a function: runtimes with one instance would refuse the next.
+///
+/// # Safety
+/// `next` is the xrGetInstanceProcAddr for this live instance.
+unsafe fn destroy(next: pfn::GetInstanceProcAddr, handle: sys::Instance) {
+    let mut function = None;
+    // SAFETY: a live instance, and the function of this name has this type.
+    unsafe {
+        next(handle, c"xrDestroyInstance".as_ptr(), &mut function);
+        if let Some(function) = function {
+            std::mem::transmute::<pfn::VoidFunction, pfn::DestroyInstance>(function)(handle);
+        }
     }
 }
 

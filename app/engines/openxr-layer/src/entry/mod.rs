@@ -85,6 +85,7 @@ intercept! {
     c"xrDestroySession" destroy_session: DestroySession(session: sys::Session) => sessions::destroy;
     c"xrBeginSession" begin_session: BeginSession(session: sys::Session, info: *const sys::SessionBeginInfo)
         => sessions::begin;
+    c"xrEndSession" end_session: EndSession(session: sys::Session) => sessions::end;
     c"xrGetVisibilityMaskKHR" get_visibility_mask: GetVisibilityMaskKHR(
         session: sys::Session, kind: ViewConfigurationType, view: u32, mask_kind: sys::VisibilityMaskTypeKHR,
         mask: *mut sys::VisibilityMaskKHR
@@ -121,8 +122,11 @@ unsafe extern "system" fn get_instance_proc_addr(
     function: *mut Option<pfn::VoidFunction>,
 ) -> sys::Result {
     without_panic(|| {
-        // SAFETY: the caller passes a string, and a place for a function.
-        let (name, function) = unsafe { (CStr::from_ptr(name), &mut *function) };
+        // SAFETY: the caller passes a place for a function, and a string.
+        let place = unsafe { function.as_mut() }.filter(|_| !name.is_null());
+        let function = place.ok_or(sys::Result::ERROR_VALIDATION_FAILURE)?;
+        // SAFETY: as above.
+        let name = unsafe { CStr::from_ptr(name) };
         *function = None;
         let instance = objects::instance(handle).ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
         // SAFETY: a live instance, and the same string.

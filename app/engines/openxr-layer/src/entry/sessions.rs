@@ -42,36 +42,36 @@ pub unsafe fn destroy(live: &LiveSession) -> XrResult<sys::Result> {
 pub unsafe fn begin(live: &LiveSession, info: *const sys::SessionBeginInfo) -> XrResult<sys::Result> {
     let session = &live.session;
     let (begin, name) = (session.instance.next.begin_session, &session.instance.application);
-    let other = session.instance.settings.dominant.other().name();
     // SAFETY: the application's arguments.
-    unsafe {
-        let kind = (*info).primary_view_configuration_type;
-        let (two, four) = (ViewsOf::PRIMARY_STEREO, ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET);
-        if [two, four].contains(&kind) && session.shrinks() {
-            let result = check(begin(session.handle, info))?;
-            session.begin(if kind == two { 2 } else { 4 });
-            let images = if kind == two { "a tiny image" } else { "two tiny images" };
-            log_line(format_args!("{name}: renders {images} for the {other} eye, which is synthesized"));
-            return Ok(result);
-        }
-        if kind != ViewsOf::PRIMARY_MONO || !session.offers_mono {
-            if kind == ViewsOf::PRIMARY_MONO {
-                log_line(format_args!("{name}: passed through: the system itself has one view, not two"));
-            } else {
-                log_line(format_args!(
-                    "{name}: passed through: it begins its session with {kind:?}, not with one view"
-                ));
-            }
-            session.begin(0);
-            return Ok(begin(session.handle, info));
-        }
-        let stereo =
-            sys::SessionBeginInfo { primary_view_configuration_type: ViewsOf::PRIMARY_STEREO, ..*info };
-        let result = check(begin(session.handle, &stereo))?;
-        session.begin(1);
-        log_line(format_args!("{name}: renders one view; the {other} eye is synthesized"));
-        Ok(result)
-    }
+    let Some(asked) = (unsafe { info.as_ref() }) else { return Ok(unsafe { begin(session.handle, info) }) };
+    let kind = asked.primary_view_configuration_type;
+    let runtimes = session.runtimes(kind)?;
+    let views = match kind {
+        ViewsOf::PRIMARY_STEREO if session.shrinks() => 2,
+        ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET if session.shrinks() => 4,
+        _ => usize::from(kind != runtimes),
+    };
+    let begun = sys::SessionBeginInfo { primary_view_configuration_type: runtimes, ..*asked };
+    // SAFETY: the application's arguments, with the runtime's configuration.
+    let result = check(unsafe { begin(session.handle, &begun) })?;
+    session.begin(views);
+    let other = session.instance.settings.dominant.other().name();
+    let what = match (views, kind) {
+        (1, _) => format!("renders one view; the {other} eye is synthesized"),
+        (2, _) => format!("renders a tiny image for the {other} eye, which is synthesized"),
+        (4, _) => format!("renders two tiny images for the {other} eye, which is synthesized"),
+        (_, ViewsOf::PRIMARY_MONO) => "passed through: the system itself has one view, not two".to_owned(),
+        _ => format!("passed through: it begins its session with {kind:?}, not with one view"),
+    };
+    log_line(format_args!("{name}: {what}"));
+    Ok(result)
+}
+
+pub unsafe fn end(live: &LiveSession) -> XrResult<sys::Result> {
+    // SAFETY: the application's own call.
+    let result = check(unsafe { (live.session.instance.next.end_session)(live.session.handle) })?;
+    live.session.begin(0);
+    Ok(result)
 }
 
 pub unsafe fn begin_frame(live: &LiveSession, info: *const sys::FrameBeginInfo) -> XrResult<sys::Result> {

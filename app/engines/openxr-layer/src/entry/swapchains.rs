@@ -34,7 +34,9 @@ pub unsafe fn create(
     let next = &session.instance.next;
     // SAFETY: the application's arguments.
     unsafe {
-        let asked = *info;
+        let Some(&asked) = info.as_ref() else {
+            return Ok((next.create_swapchain)(session.handle, info, created));
+        };
         let attached =
             sys::SwapchainUsageFlags::COLOR_ATTACHMENT | sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT;
         let readable = asked.usage_flags.intersects(attached)

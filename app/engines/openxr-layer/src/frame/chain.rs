@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use openxr_sys as sys;
 
-use crate::geometry::Rectangle;
+use crate::geometry::{Rectangle, pose};
 use crate::reason::Reason;
 use crate::structures;
 use crate::swapchain::{Content, Swapchain};
@@ -96,16 +96,28 @@ pub struct Held<'a> {
 /// Returns the image that the application released last to a swapchain. `what` is colour or depth.
 ///
 /// # Errors
-/// [`Reason::Unreadable`], and [`Reason::Old`] if the runtime already owns the image.
+/// [`Reason::Unknown`], [`Reason::Unreadable`], and [`Reason::Old`] if the runtime already owns the image.
 pub fn held<'a>(
     swapchains: &'a [Arc<Swapchain>],
     part: &sys::SwapchainSubImage,
     what: &'static str,
 ) -> Result<Held<'a>, Reason> {
     let swapchain = swapchains.iter().find(|swapchain| swapchain.handle == part.swapchain);
-    let swapchain = swapchain.filter(|known| known.content.is_some()).ok_or(Reason::Unreadable(what))?;
+    let swapchain = swapchain.ok_or(Reason::Unknown(what))?;
+    swapchain.content.as_ref().ok_or(Reason::Unreadable(what))?;
     let (content, image) = swapchain.held().ok_or(Reason::Old(what))?;
     Ok(Held { content, image: content.image(image, part.image_array_index) })
+}
+
+/// True if a view that the layer replaces has a pose, and an image within a swapchain. Otherwise the runtime must see it.
+pub fn is_sound(swapchains: &[Arc<Swapchain>], view: &sys::CompositionLayerProjectionView) -> bool {
+    let known = swapchains.iter().find(|swapchain| swapchain.handle == view.sub_image.swapchain);
+    let has_image = known.is_some_and(|known| {
+        let lies_inside = |content| rectangle(&view.sub_image, content).is_ok();
+        known.releases() > 0 && known.content.as_ref().is_none_or(lies_inside)
+    });
+    let pose = pose(view.pose);
+    has_image && pose.position.is_finite() && (pose.orientation.length() - 1.0).abs() < 0.01
 }
 
 /// Returns the rectangle of a sub-image.

@@ -17,6 +17,7 @@ use std::time::{Duration, Instant};
 
 use openxr_sys as sys;
 use smallvec::SmallVec;
+use yoro::eyes::Eye;
 
 use crate::dispatch::XrResult;
 use crate::geometry::{Offer, Rectangle, Split, Submitted, SubmittedDepth, frustum, pose};
@@ -70,9 +71,13 @@ pub unsafe fn end_frame(
     info: &sys::FrameEndInfo,
 ) -> XrResult<sys::Result> {
     let start = Instant::now();
-    let (views, next) = (session.views(), session.instance.next.end_frame);
+    let (mut views, next) = (session.views(), session.instance.next.end_frame);
     // SAFETY: the application's structure.
     let layers = unsafe { chain::layers(info) };
+    // SAFETY: the application's layers.
+    if views > 1 && !unsafe { replaces_sound_views(session, swapchains, layers) } {
+        views = 0;
+    }
     // The runtime has begun the session with two views, so it would accept layers of two views, which the application
     // must not submit.
     // SAFETY: the application's layers.
@@ -90,7 +95,7 @@ pub unsafe fn end_frame(
         let _current =
             session.binding.filter(|_| session.reads_images()).and_then(|binding| unsafe { binding.hold() });
         // SAFETY: the application's layers, which live as long as `info`.
-        let synthesized = unsafe { frames.rewrite(session, swapchains, layers, &mut rewritten) };
+        let synthesized = views > 0 && unsafe { frames.rewrite(session, swapchains, layers, &mut rewritten) };
         let releases = swapchains.iter().map(|swapchain| swapchain.pass_on_release());
         let released = releases.fold(Ok(()), Result::and);
         frames.statistics.layer += start.elapsed();
@@ -122,8 +127,10 @@ pub unsafe fn end_frame(
         lock(frames).refused(session, Reason::Runtime("xrEndFrame", result));
         let mut rewritten = Rewritten::default();
         // SAFETY: the application's layers.
-        for (layer, views) in unsafe { rendered_views(session, layers) } {
-            rewritten.push(layer, views.map(Eyes::same).collect());
+        unsafe {
+            for (layer, views) in rendered_views(session, layers) {
+                rewritten.push(layer, same(session, views));
+            }
         }
         result = end(&mut rewritten);
     }
@@ -143,6 +150,28 @@ fn is_about_layers(result: sys::Result) -> bool {
     .contains(&result)
 }
 
+/// Returns what both eyes are shown of views that are not synthesized.
+///
+/// # Safety
+/// The views belong to a submitted layer.
+unsafe fn same<'a>(
+    session: &Session,
+    views: impl Iterator<Item = &'a sys::CompositionLayerProjectionView>,
+) -> SmallVec<[Eyes; 2]> {
+    // SAFETY: same contract.
+    views.map(|view| unsafe { Eyes::same(view, session.instance.takes_depth) }).collect()
+}
+
+/// True if all views that are to be replaced could be shown.
+///
+/// # Safety
+/// The layers are those of a call of xrEndFrame in a session of more than one view.
+unsafe fn replaces_sound_views(session: &Session, swapchains: &[Arc<Swapchain>], layers: Layers) -> bool {
+    // SAFETY: same contract.
+    let replaced = unsafe { views_of(session, layers, session.instance.settings.dominant.other()) };
+    replaced.into_iter().flat_map(|(_, views)| views).all(|view| chain::is_sound(swapchains, view))
+}
+
 /// Returns the layers to rewrite. Each comes with its one view, or with those of its views that are not tiny.
 ///
 /// # Safety
@@ -156,8 +185,26 @@ unsafe fn rendered_views<'a>(
         impl Iterator<Item = &'a sys::CompositionLayerProjectionView> + Clone,
     ),
 > {
+    // SAFETY: same contract.
+    unsafe { views_of(session, layers, session.instance.settings.dominant) }
+}
+
+/// Returns the layers to rewrite, with their one view or those of an eye.
+///
+/// # Safety
+/// The layers are those of a call of xrEndFrame.
+unsafe fn views_of<'a>(
+    session: &Session,
+    layers: Layers<'a>,
+    eye: Eye,
+) -> impl Iterator<
+    Item = (
+        &'a sys::CompositionLayerProjection,
+        impl Iterator<Item = &'a sys::CompositionLayerProjectionView> + Clone,
+    ),
+> {
     let (views, count) = (session.views(), session.roles().len());
-    let first = if views == 1 { 0 } else { session.instance.settings.dominant.index() };
+    let first = if views == 1 { 0 } else { eye.index() };
     layers.iter().filter_map(move |&layer| {
         // SAFETY: the application's layers. `views` is not 0 in a session that is rewritten.
         let layer = unsafe { projection(layer, views) }?;
@@ -204,9 +251,6 @@ impl Frames {
         layers: Layers,
         rewritten: &mut Rewritten,
     ) -> bool {
-        if session.views() == 0 {
-            return false;
-        }
         let mut done = false;
         // SAFETY: the application's layers.
         for (layer, views) in unsafe { rendered_views(session, layers) } {
@@ -229,7 +273,8 @@ impl Frames {
                 }
                 Err(reason) => {
                     self.log_fallback(session, reason);
-                    views.map(Eyes::same).collect()
+                    // SAFETY: submitted views.
+                    unsafe { same(session, views) }
                 }
             };
             rewritten.push(layer, eyes);
@@ -287,7 +332,7 @@ impl Frames {
     pub fn end(&mut self, session: &Session) {
         self.views = Default::default();
         let Statistics { frames, synthesized, fallbacks, .. } = self.statistics;
-        if session.views() > 0 {
+        if synthesized + fallbacks > 0 {
             log_line(format_args!(
                 "{}: session ended after {frames} frames: {synthesized} synthesized, {fallbacks} not",
                 session.instance.application

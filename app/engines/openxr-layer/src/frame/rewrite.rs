@@ -3,7 +3,7 @@
 use openxr_sys as sys;
 use smallvec::SmallVec;
 
-use super::chain::{Layers, projection};
+use super::chain::{Layers, depth_of, projection};
 
 /// Two views that replace one, and their depth if it is passed on to the runtime.
 pub struct Eyes {
@@ -12,10 +12,17 @@ pub struct Eyes {
 }
 
 impl Eyes {
-    /// Returns the same image for both eyes, without the structures chained to the view, which are meant for one eye.
-    pub fn same(view: &sys::CompositionLayerProjectionView) -> Eyes {
-        let view = sys::CompositionLayerProjectionView { next: std::ptr::null(), ..*view };
-        Eyes { views: [view; 2], depths: None }
+    /// Returns the same image for both eyes, with its depth for runtimes that take it. Other structures chained to the view
+    /// are meant for one eye.
+    ///
+    /// # Safety
+    /// The view belongs to a submitted layer.
+    pub unsafe fn same(view: &sys::CompositionLayerProjectionView, takes_depth: bool) -> Eyes {
+        let next = std::ptr::null();
+        // SAFETY: same contract.
+        let depth = unsafe { depth_of(view) }.filter(|_| takes_depth);
+        let depths = depth.map(|depth| [sys::CompositionLayerDepthInfoKHR { next, ..*depth }; 2]);
+        Eyes { views: [sys::CompositionLayerProjectionView { next, ..*view }; 2], depths }
     }
 }
 

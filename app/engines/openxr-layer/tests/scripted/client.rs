@@ -15,6 +15,7 @@ use crate::harness::{self, Gpu, READ, WRITTEN};
 use crate::scene::{self, Picture};
 
 mod extensions;
+mod mistakes;
 
 pub const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
 
@@ -208,6 +209,12 @@ impl View {
             std::mem::swap(&mut fov.angle_down, &mut fov.angle_up);
         }
         view
+    }
+
+    /// Returns the view with a pose that is none.
+    pub fn without_orientation(mut self) -> View {
+        self.raw.0.orientation = sys::Quaternionf { x: 0.0, y: 0.0, z: 0.0, w: 0.0 };
+        self
     }
 
     /// Returns the view moved by an offset.
@@ -452,16 +459,7 @@ impl<'a> Client<'a> {
             // SAFETY: the event has this type.
             let state = unsafe { (*(&raw const event).cast::<sys::EventDataSessionStateChanged>()).state };
             match state {
-                sys::SessionState::READY => {
-                    let info = sys::SessionBeginInfo {
-                        ty: sys::SessionBeginInfo::TYPE,
-                        next: ptr::null(),
-                        primary_view_configuration_type: self.views,
-                    };
-                    // SAFETY: a live session.
-                    check("xrBeginSession", unsafe { (self.xr.begin_session)(self.session, &info) })?;
-                    self.running = true;
-                }
+                sys::SessionState::READY => self.begin(self.views)?,
                 sys::SessionState::STOPPING => {
                     self.running = false;
                     // SAFETY: a live session.
@@ -471,6 +469,19 @@ impl<'a> Client<'a> {
                 _ => {}
             }
         }
+    }
+
+    /// Begins the session with this view configuration.
+    pub fn begin(&mut self, views: ViewsOf) -> Outcome<()> {
+        let info = sys::SessionBeginInfo {
+            ty: sys::SessionBeginInfo::TYPE,
+            next: ptr::null(),
+            primary_view_configuration_type: views,
+        };
+        // SAFETY: a live session.
+        check("xrBeginSession", unsafe { (self.xr.begin_session)(self.session, &info) })?;
+        self.running = true;
+        Ok(())
     }
 
     pub fn is_running(&self) -> bool {

@@ -2,6 +2,7 @@
 
 use std::ffi::CStr;
 
+use openxr_sys::ViewConfigurationType as ViewsOf;
 use yoro::eyes::Eye;
 use yoro::vulkan::ash::vk;
 
@@ -159,6 +160,36 @@ pub fn with_session<'a>(
     let chains = begin_session(&mut client, habits)?;
     frame(&mut client, &chains, habits)?;
     work(&mut client, &chains)?;
+    client.destroy_session()
+}
+
+/// Runs an application with the setting `shrink`, which renders a tiny view beside its own. `show` ends each frame with
+/// both.
+pub fn run_shrunk<'a>(
+    drawing: impl Into<Drawing<'a>>,
+    habits: &Habits,
+    count: u32,
+    show: impl Fn(&mut Client, Frame, [Submitted; 2]) -> Outcome<()>,
+) -> Outcome<()> {
+    let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
+    client.views = ViewsOf::PRIMARY_STEREO;
+    client.create_session()?;
+    client.poll()?;
+    let sizes = client.sizes()?;
+    assert!(sizes[0] == [16; 2] && sizes[1][0] > 128 && sizes[1][1] == 128, "{sizes:?}");
+    let own = Chains::of_size(&client, sizes[1])?;
+    let tiny = client.chain(SRGB, sizes[0], 1)?;
+    let part = Part { chain: tiny.handle, size: sizes[0], ..own.part };
+    for _ in 0..count {
+        client.poll()?;
+        let frame = client.begin_frame()?;
+        let views = client.locate(frame)?;
+        let rendered = render(&mut client, &own, habits, views[1].unwrap())?;
+        client.acquire(&tiny)?;
+        client.release(&tiny)?;
+        let unused = Submitted { view: views[0].unwrap(), color: part, depth: None };
+        show(&mut client, frame, [unused, rendered])?;
+    }
     client.destroy_session()
 }
 

@@ -7,6 +7,7 @@ mod drawing;
 mod faults;
 mod habits;
 mod lasting;
+mod mistakes;
 mod passing;
 mod scene;
 mod stereo;

@@ -90,6 +90,10 @@ fn the_runtime_fills_what_is_chained_to_views() {
                 let mut client = Client::new(gpu, name, &[DEPTH]).unwrap();
                 client.views = views;
                 assert_eq!(client.chained_depth_ranges(count).unwrap(), vec![[0.1, 50.0]; count], "{name}");
+                // The rendered view's field of view is that of both eyes.
+                let [left, right] = script().eyes.map(|eye| eye.fov_degrees);
+                let both = [left[0].min(right[0]), left[1].max(right[1])].map(f32::to_radians);
+                assert_eq!(client.chained_fields_of_view(count).unwrap()[count - 1], both, "{name}");
                 client.create_session().unwrap();
                 client.poll().unwrap();
                 let frame = client.begin_frame().unwrap();
@@ -177,32 +181,38 @@ fn a_runtime_without_depth_gets_two_views() {
     });
 }
 
-/// Once a session has begun in stereo, calls for one view get the runtime's answer.
+/// A view configuration that is offered can be located in a session of another. With `offer = "only"` no other is known.
 #[test]
-fn one_view_cannot_be_located_in_stereo() {
+fn what_is_offered_can_be_located() {
     with_gpu(|gpu| {
+        let [one, two] = [ViewsOf::PRIMARY_MONO, ViewsOf::PRIMARY_STEREO];
         for (name, mono) in [("right", false), ("shrink", false), ("right", true), ("shrink", true)] {
             watched(Script { mono, ..script() }, || {
                 let mut client = Client::new(gpu, name, &[DEPTH]).unwrap();
-                client.views = ViewsOf::PRIMARY_STEREO;
+                client.views = two;
                 client.create_session().unwrap();
                 client.poll().unwrap();
                 let frame = client.begin_frame().unwrap();
-                client.views = ViewsOf::PRIMARY_MONO;
-                let located = client.locate(frame);
-                if mono {
-                    // The runtime's own view has the left eye's field of view.
-                    let [left, right, ..] =
-                        script().eyes[0].fov_degrees.map(|angle| angle.to_radians().tan());
-                    let frustum = located.unwrap()[0].unwrap().frustum;
-                    let error = (frustum.left - left).abs().max((frustum.right - right).abs());
-                    assert!(error < 1e-5, "{name}: {frustum:?}");
-                } else {
-                    let result = sys::Result::ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED;
-                    assert_eq!(located, Err(Failure { call: "xrLocateViews", result }), "{name}");
-                }
+                client.views = one;
+                let width = client.locate(frame).unwrap()[0].unwrap().frustum.width();
+                // The layer's view is wider than the runtime's own, whether that has one or not.
+                let [left, right, ..] = script().eyes[0].fov_degrees.map(|angle| angle.to_radians().tan());
+                assert!(width > 1.01 * (right - left), "{name}: {width}");
             });
         }
+        let seen = watched(script(), || {
+            let refused =
+                |call| Failure { call, result: sys::Result::ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED };
+            let mut client = Client::new(gpu, "only", &[DEPTH]).unwrap();
+            client.create_session().unwrap();
+            assert_eq!(client.begin(two), Err(refused("xrBeginSession")));
+            client.poll().unwrap();
+            let frame = client.begin_frame().unwrap();
+            client.views = two;
+            assert_eq!(client.locate(frame), Err(refused("xrLocateViews")));
+            assert_eq!(client.sizes(), Err(refused("xrEnumerateViewConfigurationViews")));
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
     });
 }
 

@@ -1,6 +1,7 @@
 //! The pictures of the passes on wgpu equal those of the OpenGL passes, both on wgpu's Vulkan and on its OpenGL.
 
 mod harness;
+mod holes;
 mod levels;
 mod nearest;
 
@@ -34,7 +35,11 @@ fn named(format: vk::Format) -> TextureFormat {
 }
 
 fn options(setup: &Setup) -> Options {
-    Options { color_format: named(setup.target), depth_format: setup.target_depth.map(named) }
+    Options {
+        color_format: named(setup.target),
+        depth_format: setup.target_depth.map(named),
+        ..Options::default()
+    }
 }
 
 impl Device for &Gpu {

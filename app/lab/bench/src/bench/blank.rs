@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use yoro::eyes::{DepthRange, EyePair, View};
 use yoro_gl::{Context, GlError};
-use yoro_render::{DepthReader, GpuScene, PreparedScene, Selection, ViewTargets};
+use yoro_render::{DepthReader, GpuScene, PreparedScene, ViewTargets};
 
 /// The longest edge in pixels of the image that is examined. Whatever is smaller on the screen is negligible.
 const EDGE: u32 = 256;
@@ -124,7 +124,7 @@ impl BlankFinder {
         if scene.is_transparent_in(&view) {
             return Ok(true);
         }
-        let rendered = renderer.render(&mut self.targets, scene, &view, Selection::All)?;
+        let rendered = renderer.render(&mut self.targets, scene, &view)?;
         self.depth.copy(&rendered.depth, view.size)?;
         let far = view.depth.clear_value();
         Ok(self.depth.read().iter().any(|depth| *depth != far))

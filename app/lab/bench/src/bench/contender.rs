@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::inpaint::PatcherKind;
-use yoro_render::stereo::{Method, Pipeline, StereoOptions};
+use yoro_render::stereo::{HoleMethod, Method, Pipeline, StereoOptions};
 
 /// A stereo method, synthesis with one of its pipelines, or a patcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +12,8 @@ pub enum Contender {
     Method(Method),
     /// Synthesis of the other eye by this pipeline.
     Synthesized(Pipeline),
+    /// The pipeline gather, with rendered holes.
+    RenderedHoles,
     /// The paper's pipeline without interpolation between ImBuffer entries.
     PaperNearest,
     /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as in its text.
@@ -36,10 +38,14 @@ impl Contender {
         synthesis.chain(Contender::patchers()).collect()
     }
 
-    /// Returns the stereo methods, with synthesis once for each of its pipelines.
+    /// Returns the stereo methods, with synthesis once for each of its pipelines, and with rendered holes.
     pub fn methods() -> Vec<Contender> {
         let others = Method::ALL.into_iter().filter(|method| *method != Method::Synthesized);
-        others.map(Contender::Method).chain(Contender::pipelines()).collect()
+        others
+            .map(Contender::Method)
+            .chain(Contender::pipelines())
+            .chain([Contender::RenderedHoles])
+            .collect()
     }
 
     /// Returns synthesis with each of its pipelines.
@@ -63,6 +69,7 @@ impl Contender {
         match self {
             Contender::Method(method) => method.name().into(),
             Contender::Synthesized(pipeline) => format!("yoro-{}", pipeline.name()),
+            Contender::RenderedHoles => "yoro-holes-rendered".into(),
             Contender::PaperNearest => "yoro-paper-nearest".into(),
             Contender::PaperStrict => "yoro-paper-strict".into(),
             Contender::Patcher(kind) => format!("patcher-{}", kind.name()),
@@ -80,11 +87,15 @@ impl Contender {
         let (method, pipeline) = match self {
             Contender::Method(method) => (method, Pipeline::default()),
             Contender::Synthesized(pipeline) => (Method::Synthesized, pipeline),
+            Contender::RenderedHoles => (Method::Synthesized, Pipeline::Gather),
             Contender::PaperNearest | Contender::PaperStrict => (Method::Synthesized, Pipeline::Paper),
             Contender::Patcher(_) => return None,
         };
         let mut options = StereoOptions::of_pipeline(pipeline);
         options.policy = None;
+        if self == Contender::RenderedHoles {
+            options.holes = HoleMethod::Rendered;
+        }
         let paper = &mut options.synthesis.paper;
         paper.linear_interpolation &= self != Contender::PaperNearest;
         paper.strict |= self == Contender::PaperStrict;

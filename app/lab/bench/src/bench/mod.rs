@@ -42,7 +42,7 @@ pub use scenes::{LazyObject, Object};
 pub use subject::{FrameTime, Subject};
 pub use suites::EXPERIMENTS;
 pub use summary::text;
-pub use views::spread;
+pub use views::{check_path, spread};
 
 /// A suite of `yoro bench`: what it measures, and how its results are shown.
 pub trait Experiment: Sync {
@@ -64,6 +64,11 @@ pub trait Experiment: Sync {
     /// # Errors
     /// As [`Runner::run`].
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()>;
+
+    /// Returns whether the head of a job moves along the scene's camera path.
+    fn moves(&self, _job: &Job) -> bool {
+        false
+    }
 
     /// Returns the number of steps of progress of a job: by default the preparation and the frames of each contender.
     fn steps(&self, job: &Job) -> u64 {

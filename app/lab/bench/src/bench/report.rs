@@ -1,18 +1,17 @@
 //! The report of `yoro bench`: files of results as sections of tables, plots and pictures.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use yoro::eyes::Eye;
-use yoro_report::{OtherEye, Picture, Pictures, Report, ReportError, ReportFiles, Section, Text};
+use yoro_report::{Pictures, Report, ReportError, ReportFiles, Section, Text};
 
 use super::pictures::picture_folder;
 use super::record::Results;
 use super::results::{self, CONVENTIONAL, MONO, SuiteData};
 use super::suites::EXPERIMENTS;
 use super::tables;
-use crate::report::{QUALITY_METHOD, Viewpoint};
+use crate::report::{QUALITY_METHOD, Viewpoint, pictures};
 use yoro_media::PictureError;
-use yoro_metrics::MetricsError;
 
 /// The heading of the page.
 const TITLE: &str = "yoro: every method side by side";
@@ -29,23 +28,12 @@ each round, so that ratios pair frames of the same round; means of ratios over s
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BenchReportError {
-    /// A file has no finished round.
-    #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
-    Empty {
-        /// The file.
-        path: PathBuf,
-    },
+    /// A file has no finished round, or the pictures of a setting cannot be compared. Holds the sentence.
+    #[error("{0}")]
+    Unusable(String),
     /// A picture beside a file cannot be read.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// The pictures of a setting cannot be compared.
-    #[error("the pictures in {} do not go together ({source}): measure again, or remove the folder", path.display())]
-    Sizes {
-        /// The folder.
-        path: PathBuf,
-        /// The mistake.
-        source: MetricsError,
-    },
 }
 
 /// The combined contents of files of results.
@@ -62,7 +50,10 @@ impl BenchReport {
     /// [`BenchReportError`] for a file without a finished round, and for damaged pictures.
     pub fn new(files: Vec<Results>) -> Result<BenchReport, BenchReportError> {
         if let Some(empty) = files.iter().find(|file| file.measurements().next().is_none()) {
-            return Err(BenchReportError::Empty { path: empty.path.clone() });
+            return Err(BenchReportError::Unusable(format!(
+                "{} holds no finished round: let yoro bench finish one, then report",
+                empty.path.display()
+            )));
         }
         let suites = results::suites(&files);
         let mut pictures = Vec::new();
@@ -93,11 +84,6 @@ impl BenchReport {
         sections.retain(|section| !section.is_empty());
         sections.push(self.method());
         Report { title: TITLE.into(), summary: vec![PAPERS_MARK.into()], sections }
-    }
-
-    /// Returns the files that [`BenchReport::write`] writes into `folder`.
-    pub fn files(folder: &Path) -> ReportFiles {
-        ReportFiles::of(folder, "report", false)
     }
 
     /// Writes `report.html` and `report.md` into a folder.
@@ -158,7 +144,7 @@ impl BenchReport {
 
 /// Loads the pictures beside a file, in the order of its settings.
 fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
-    let mut pictures = Vec::new();
+    let mut all = Vec::new();
     let dominant_eye = file.header.parameters.iter().find(|parameter| parameter.name == "dominant eye");
     let dominant_eye = match dominant_eye {
         Some(parameter) if parameter.value == Eye::Left.name() => Eye::Left,
@@ -181,35 +167,16 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
         }
         let frame = facts.frames.first().cloned().unwrap_or_else(|| "first frame".into());
         let (dominant, truth) = (load("dominant")?, load("truth")?);
-        let viewpoint = Viewpoint::measure(frame, dominant_eye, dominant, truth, views)
-            .map_err(|source| BenchReportError::Sizes { path: folder.clone(), source })?;
+        let viewpoint = Viewpoint::measure(frame, dominant_eye, dominant, truth, views).map_err(|error| {
+            BenchReportError::Unusable(format!(
+                "the pictures in {} do not go together ({error}): measure again, or remove the folder",
+                folder.display()
+            ))
+        })?;
         let setting = &facts.conditions;
         let point = setting.label.clone().or(setting.point.map(|point| point.to_string()));
         let note = point.map_or_else(|| setting.suite.clone(), |point| format!("{}, {point}", setting.suite));
-        pictures.push(Pictures { title: setting.scene.clone(), note, ..pictures_of(&viewpoint) });
+        all.push(pictures(&viewpoint, setting.scene.clone(), format!("{note}, {}", viewpoint.name)));
     }
-    Ok(pictures)
-}
-
-/// Returns the pictures of a viewpoint: the real render, each method's, the same image, and maps of the errors.
-fn pictures_of(viewpoint: &Viewpoint) -> Pictures {
-    let caption =
-        |quality: &yoro_metrics::Quality| format!("PSNR {}, SSIM {:.4}", quality.psnr, quality.ssim_gaussian);
-    let picture = |label: String, caption: String, image: &image::RgbImage, is_map: bool| Picture {
-        label,
-        caption,
-        image: image.clone(),
-        is_map,
-    };
-    let same = caption(&viewpoint.same_image);
-    let views = &viewpoint.views;
-    let mut pictures =
-        vec![picture("really rendered".into(), viewpoint.name.clone(), &viewpoint.ground_truth, false)];
-    pictures.extend(views.iter().map(|v| picture(v.method.clone(), caption(&v.quality), &v.eye, false)));
-    let dominant = OtherEye { picture: pictures.len(), is_left: viewpoint.dominant_eye == Eye::Left };
-    pictures.push(picture("same image".into(), same.clone(), &viewpoint.dominant, false));
-    let error = |name: &str| format!("error: {name}");
-    pictures.extend(views.iter().map(|v| picture(error(&v.method), caption(&v.quality), &v.error, true)));
-    pictures.push(picture(error("same image"), same, &viewpoint.same_image_error, true));
-    Pictures { pictures, other_eye: Some(dominant), ..Pictures::default() }
+    Ok(all)
 }

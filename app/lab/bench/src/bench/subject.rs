@@ -7,7 +7,8 @@ use super::process;
 use yoro::eyes::{EyePair, EyesError, FoveationLevel, Gaze, StereoViews};
 use yoro_gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
-    EyeTarget, FrameReport, FrameTargets, Method, StereoError, StereoFrame, StereoOptions, StereoSession,
+    EyeTarget, FrameReport, FrameTargets, HoleMethod, Method, StereoError, StereoFrame, StereoOptions,
+    StereoSession,
 };
 use yoro_render::{PreparedScene, RenderSettings};
 
@@ -47,31 +48,19 @@ impl Subject {
         })
     }
 
-    /// Compiles a method that has all pixels only where the eyes look, and always does what its name says.
+    /// Compiles a method that has all pixels only where the eyes look, and always does what its name says. It may write
+    /// motion vectors, for a runtime that makes frames of them.
     ///
     /// # Errors
     /// As [`Subject::new`].
     pub fn foveated(
         gl: &Rc<Context>,
-        method: Method,
+        (method, holes): (Method, HoleMethod),
         settings: &RenderSettings,
         foveation: FoveationLevel,
+        motion_vectors: bool,
     ) -> Result<Subject, GlError> {
-        let options = StereoOptions { policy: None, ..StereoOptions::default() };
-        Ok(Subject { foveation, ..Subject::new(gl, method, settings, &options)? })
-    }
-
-    /// Compiles the same as [`Subject::foveated`] for a runtime that makes frames of motion vectors.
-    ///
-    /// # Errors
-    /// As [`Subject::new`].
-    pub fn with_motion(
-        gl: &Rc<Context>,
-        method: Method,
-        settings: &RenderSettings,
-        foveation: FoveationLevel,
-    ) -> Result<Subject, GlError> {
-        let options = StereoOptions { policy: None, motion_vectors: true, ..StereoOptions::default() };
+        let options = StereoOptions { policy: None, motion_vectors, holes, ..StereoOptions::default() };
         Ok(Subject { foveation, ..Subject::new(gl, method, settings, &options)? })
     }
 

@@ -1,12 +1,12 @@
 //! The viewpoints of a setting's frames, and the motion of the head in sequences.
 
-use anyhow::{bail, ensure};
+use anyhow::ensure;
 use glam::{Quat, Vec3};
 
 use super::job::{Job, Source};
 use super::record::SceneFacts;
 use yoro::eyes::{EyePair, Pose};
-use yoro_assets::CameraPath;
+use yoro_assets::{CameraPath, Viewpoint};
 use yoro_render::PreparedScene;
 use yoro_scenes::BUILTINS;
 
@@ -31,6 +31,19 @@ pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
     (0..wanted).map(|i| i * count / wanted).collect()
 }
 
+/// Returns the scene's camera path.
+///
+/// # Errors
+/// One sentence if the scene has fewer than two viewpoints.
+pub fn check_path(scene: &str, viewpoints: &[Viewpoint]) -> anyhow::Result<CameraPath> {
+    let path = CameraPath::new(viewpoints);
+    ensure!(
+        path.keys().len() > 1,
+        "{scene} has no camera path: write two or more viewpoints into {scene}.camera.json beside the model, or give another camera path"
+    );
+    Ok(path)
+}
+
 /// The frames of a setting.
 #[derive(Clone)]
 pub(super) struct Views {
@@ -48,14 +61,7 @@ impl Views {
 
     /// Returns frames that start in the middle of the camera path and are `step` metres apart.
     pub fn along_path(job: &Job, prepared: &PreparedScene, step: f32) -> anyhow::Result<Views> {
-        let path = CameraPath::new(&prepared.scene.viewpoints);
-        if path.keys().len() < 2 {
-            bail!(
-                "{} has no camera path: write two or more viewpoints into {}.camera.json beside the model, or give another camera path",
-                prepared.scene.name,
-                prepared.scene.name
-            );
-        }
+        let path = check_path(&prepared.scene.name, &prepared.scene.viewpoints)?;
         let length: f32 = path.poses(500).windows(2).map(|w| w[0].position.distance(w[1].position)).sum();
         // A path that only turns takes twenty seconds.
         let step = if length > STEP { step / length } else { step / (600.0 * STEP) };

@@ -15,6 +15,7 @@ use serde::Serialize;
 use yoro_report::paper::{PAPER, PaperScene};
 use yoro_report::{ReportError, ReportFiles};
 
+pub(crate) use page::pictures;
 pub(crate) use run::{Cost, MethodCost, MethodMean, PassTime, QUALITY_METHOD, Row};
 pub use run::{MethodView, RunReport, SceneReport, Viewpoint};
 

@@ -61,7 +61,7 @@ pub(super) fn report(run: &RunReport) -> Report {
 }
 
 /// Returns a table of the machine and of everything that influences the figures.
-pub(super) fn machine(title: &str, machine: &Machine, parameters: &[Parameter]) -> Table {
+fn machine(title: &str, machine: &Machine, parameters: &[Parameter]) -> Table {
     let mut table = Table::new(title, &["<what", "<value"]);
     let facts = [
         ("command", machine.command.clone()),
@@ -79,7 +79,7 @@ pub(super) fn machine(title: &str, machine: &Machine, parameters: &[Parameter]) 
 }
 
 /// Returns the pictures of a viewpoint: the truth, each method's, the same image, and the error maps of these.
-pub(super) fn pictures(viewpoint: &Viewpoint, title: String, note: String) -> Pictures {
+pub(crate) fn pictures(viewpoint: &Viewpoint, title: String, note: String) -> Pictures {
     let (dominant, other) = (viewpoint.dominant_eye.name(), viewpoint.dominant_eye.other().name());
     let figures = |quality: &Quality| {
         format!(

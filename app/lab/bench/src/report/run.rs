@@ -215,6 +215,6 @@ impl SceneReport {
     }
 }
 
-pub(super) fn view_of<'a>(viewpoint: &'a Viewpoint, method: &str) -> Option<&'a MethodView> {
+fn view_of<'a>(viewpoint: &'a Viewpoint, method: &str) -> Option<&'a MethodView> {
     viewpoint.views.iter().find(|view| view.method == method)
 }

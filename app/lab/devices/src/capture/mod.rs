@@ -40,34 +40,14 @@ pub enum CaptureError {
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The folder holds no run.
-    #[error("{} is no capture (it has no {RUN_FILE}): name a folder that yoro device has written", folder.display())]
-    Foreign {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// None of the folders holds a run.
-    #[error("there is no capture in {folders}: name folders that yoro device has written")]
-    None {
-        /// The folders, separated by commas.
-        folders: String,
-    },
+    /// The folder or the folders hold no run, or one of another version of the format. Holds the sentence.
+    #[error("{0}")]
+    Unusable(String),
     /// The folder already holds a run, or a file with the name of one of the capture's.
     #[error("{} is there already, and the capture would replace it: name another folder", path.display())]
     Occupied {
         /// The file.
         path: PathBuf,
-    },
-    /// The capture has another version of the format.
-    #[error(
-        "{} has version {version} of the capture format and this yoro reads version {VERSION}: use the yoro that wrote it",
-        path.display()
-    )]
-    Version {
-        /// The capture's `run.json`.
-        path: PathBuf,
-        /// The version in it.
-        version: u64,
     },
     /// A file of the capture is damaged.
     #[error("{} is damaged ({what}): leave the run out, or measure it again", path.display())]
@@ -258,16 +238,20 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
 pub fn read_info(folder: &Path) -> Result<RunInfo, CaptureError> {
     let path = folder.join(RUN_FILE);
     if folder.is_dir() && !path.exists() {
-        return Err(CaptureError::Foreign { folder: folder.into() });
+        return Err(CaptureError::Unusable(format!(
+            "{} is no capture (it has no {RUN_FILE}): name a folder that yoro device has written",
+            folder.display()
+        )));
     }
     let bytes = files::read(&path)?;
     let damaged =
         |error: serde_json::Error| CaptureError::Damaged { path: path.clone(), what: error.to_string() };
     let value: serde_json::Value = serde_json::from_slice(&bytes).map_err(damaged)?;
     match value.get("version").and_then(serde_json::Value::as_u64) {
-        Some(version) if version != u64::from(VERSION) => {
-            Err(CaptureError::Version { path: path.clone(), version })
-        }
+        Some(version) if version != u64::from(VERSION) => Err(CaptureError::Unusable(format!(
+            "{} has version {version} of the capture format and this yoro reads version {VERSION}: use the yoro that wrote it",
+            path.display()
+        ))),
         _ => serde_json::from_value(value).map_err(damaged),
     }
 }
@@ -289,7 +273,9 @@ pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CaptureError> {
     found.dedup();
     if found.is_empty() {
         let names: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
-        return Err(CaptureError::None { folders: names.join(", ") });
+        let what =
+            format!("there is no capture in {}: name folders that yoro device has written", names.join(", "));
+        return Err(CaptureError::Unusable(what));
     }
     Ok(found)
 }

@@ -109,7 +109,7 @@ fn damaged_folders_are_named() {
     assert!(sentence(dir.path()).contains("is no capture"));
     assert!(sentence(&dir.path().join("none")).contains("does not exist"));
     let error = find(&[dir.path().into()]).unwrap_err();
-    assert!(matches!(error, CaptureError::None { .. }), "{error}");
+    assert!(error.to_string().starts_with("there is no capture in "), "{error}");
     let folder = dir.path().join("run");
     let mut writer = Writer::create(&folder, info()).unwrap();
     writer.sample(&Sample::default()).unwrap();

@@ -4,7 +4,7 @@ use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
 use super::motion::write_rendered;
 use super::options::StereoOptions;
-use crate::view::{DepthResolve, GpuScene, Layout, Renderer, Targets, VectorPass};
+use crate::view::{DepthResolve, GpuScene, Layout, RenderedDepth, Renderer, Targets, VectorPass};
 use yoro::eyes::Eye;
 use yoro_gl::GlError;
 
@@ -57,7 +57,8 @@ impl StereoMethod for Conventional {
                 let depth = targets.depth(view.size, Eye::Left, [0, 0]);
                 frame.write_depth(eye, &depth);
                 if let Some(pass) = self.vectors.as_mut().filter(|_| to.motion.is_some()) {
-                    has_motion = write_rendered(pass, frame, eye, &depth)?;
+                    let rendered = RenderedDepth { depth: &depth, view: &view };
+                    has_motion = write_rendered(pass, frame, eye, rendered)?;
                 }
                 if is_measured {
                     frame.measure_depth(&depth)?;

@@ -20,6 +20,8 @@ pub(super) struct Frame<'a> {
     /// The convention of the depth that targets receive.
     convention: DepthConvention,
     to: &'a [EyeTarget<'a>; 2],
+    /// True if holes are filled, even if they could be rendered.
+    pub(super) fills_holes: bool,
     /// Measures the dominant eye's depth for later frames.
     near: RefCell<Option<&'a mut NearSwitch>>,
 }
@@ -38,12 +40,18 @@ impl<'a> Frame<'a> {
         let layer = ViewLayer { eyes: reversed(&layer.eyes), ..*layer };
         let scene = shown.map_or(scene.into(), |shown| LitScene::of_eyes(scene, shown));
         let near = RefCell::new(None);
-        Ok(Frame { renderer, scene, pair: layer.eyes, layer, convention, to, near })
+        let pair = layer.eyes;
+        Ok(Frame { renderer, scene, pair, layer, convention, to, fills_holes: false, near })
     }
 
     /// Gives the frame what measures the dominant eye's depth, if anything does.
     pub(super) fn measured_by(self, near: Option<&'a mut NearSwitch>) -> Frame<'a> {
         Frame { near: RefCell::new(near), ..self }
+    }
+
+    /// Has holes filled, even if they could be rendered.
+    pub(super) fn with_filled_holes(self, fills_holes: bool) -> Frame<'a> {
+        Frame { fills_holes, ..self }
     }
 
     /// True if the dominant eye's depth is measured.

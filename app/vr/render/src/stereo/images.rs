@@ -2,10 +2,11 @@
 
 use std::rc::Rc;
 
-use super::method::{EyeTarget, StereoFrame};
-use yoro::eyes::{Composition, Eye, EyePair, StereoViews};
+use super::method::{DepthTarget, EyeTarget, StereoFrame};
+use crate::view::{DepthCopy, DepthImage};
+use yoro::eyes::{Composition, DepthConvention, Eye, EyePair, InsetPlace, StereoViews};
 use yoro::opengl::{Composer, GlState, InsetImage, LevelImage, LevelImages};
-use yoro_gl::{Context, Destination, GlError};
+use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
 
 /// The targets of a frame by layer and [`Eye::index`]. Each has the size of its layer.
 #[derive(Clone, Copy)]
@@ -28,10 +29,25 @@ pub struct StereoImages {
     gl: Rc<Context>,
     wide: StereoFrame,
     inset: Option<StereoFrame>,
+    /// The depth of the synthesized eye; made with the first one that has an inset.
+    depth: Option<SynthesizedDepth>,
+    /// True if an eye of these views is synthesized, and has an inset.
+    has_depth: bool,
     /// Made with the first eye that is composed here.
     composer: Option<Composer>,
     /// The views that the images show; `None` before the first frame.
     views: Option<StereoViews>,
+}
+
+/// The depth that the wide layer of the synthesized eye has, and the part of it where the inset is.
+///
+/// What the wide layer shows there may come from beyond the border of the image of which the inset is synthesized: near
+/// things that are cut off by that border, or lie outside of it, and are in front of what the inset shows. The composer
+/// shows the wide layer there.
+struct SynthesizedDepth {
+    wide: RenderTarget,
+    inset: RenderTarget,
+    copy: DepthCopy,
 }
 
 impl StereoImages {
@@ -41,26 +57,63 @@ impl StereoImages {
     /// As [`StereoFrame::new`].
     pub fn new(gl: &Rc<Context>) -> Result<StereoImages, GlError> {
         let wide = StereoFrame::new(gl, [1, 1])?;
-        Ok(StereoImages { gl: gl.clone(), wide, inset: None, composer: None, views: None })
+        Ok(StereoImages {
+            gl: gl.clone(),
+            wide,
+            inset: None,
+            depth: None,
+            has_depth: false,
+            composer: None,
+            views: None,
+        })
     }
 
-    /// Fits the images to views, and returns them as targets. Allocates nothing while sizes stay.
-    pub(super) fn fit(&mut self, views: &StereoViews) -> Result<LayerTargets<'static>, GlError> {
+    /// Fits the images to views, and returns them as targets. `is_synthesized` says whether one of the eyes will be. Allocates
+    /// nothing while sizes stay.
+    pub(super) fn fit(
+        &mut self,
+        views: &StereoViews,
+        is_synthesized: bool,
+    ) -> Result<LayerTargets<'_>, GlError> {
         self.views = Some(*views);
         self.wide.resize(views.wide.eyes.size)?;
-        let inset = match &views.inset {
-            None => None,
-            Some(layer) => {
-                let inset = match self.inset.take() {
-                    Some(inset) => inset,
-                    None => StereoFrame::new(&self.gl, layer.eyes.size)?,
-                };
-                let inset = self.inset.insert(inset);
-                inset.resize(layer.eyes.size)?;
-                Some(inset.targets())
-            }
+        let mut wide: [EyeTarget; 2] = self.wide.targets();
+        self.has_depth = is_synthesized && views.inset.is_some();
+        let Some(layer) = &views.inset else { return Ok(LayerTargets { wide, inset: None }) };
+        let inset = match &mut self.inset {
+            Some(inset) => inset,
+            slot => slot.insert(StereoFrame::new(&self.gl, layer.eyes.size)?),
         };
-        Ok(LayerTargets { wide: self.wide.targets(), inset })
+        inset.resize(layer.eyes.size)?;
+        if is_synthesized {
+            let depth = match &mut self.depth {
+                Some(depth) => depth,
+                slot => slot.insert(SynthesizedDepth::new(&self.gl)?),
+            };
+            depth.wide.resize(views.wide.eyes.size)?;
+            depth.inset.resize(layer.eyes.size)?;
+            let to = Destination::whole(&depth.wide);
+            wide[views.shown.dominant.other().index()].depth = Some(DepthTarget { to, copy: &depth.copy });
+        }
+        Ok(LayerTargets { wide, inset: Some(inset.targets()) })
+    }
+
+    /// Completes the images after their layers were rendered.
+    pub(super) fn complete(&self) {
+        let (Some(views), Some(depth)) = (&self.views, self.depth.as_ref().filter(|_| self.has_depth)) else {
+            return;
+        };
+        let Composition { wide, inset, .. } = views.composition(views.shown.dominant.other());
+        let Some(InsetPlace { place: inset, .. }) = inset else { return };
+        // From a pixel of the inset to its place in the eye, and on to the pixel of the wide layer.
+        let map = [0, 1].map(|i| {
+            let pixels = f64::from(wide.size[i]);
+            let scale = wide.scale[i] / inset.scale[i] * pixels / f64::from(inset.size[i]);
+            (scale, (wide.offset[i] - wide.scale[i] / inset.scale[i] * inset.offset[i]) * pixels)
+        });
+        let map = [map.map(|(scale, _)| scale as f32), map.map(|(_, first)| first as f32)];
+        let convention = views.shown.depth.convention;
+        depth.copy.run_scaled(&depth.image(convention), &Destination::whole(&depth.inset), convention, map);
     }
 
     /// Returns the images of the wide layer: the eyes themselves in frames without an inset.
@@ -81,32 +134,57 @@ impl StereoImages {
     pub fn eye(&self, eye: Eye) -> Option<(LevelImages, Composition)> {
         let views = self.views.as_ref()?;
         let image = |frame: &StereoFrame| LevelImage::new(frame.eye(eye).color(0).raw());
-        // The band of an inset reaches as near as eyes can focus: without depth, what is nearer is filled there as it is at
-        // the border of a whole eye.
         let inset = self.inset.as_ref().filter(|_| views.inset.is_some());
-        let inset = inset.map(|inset| InsetImage { image: image(inset), depth: None });
+        let depth = self.depth.as_ref().filter(|_| self.has_depth && eye != views.shown.dominant);
+        let depth = depth.map(|depth| depth.inset.depth().raw());
+        let inset = inset.map(|inset| InsetImage { image: image(inset), depth });
         Some((LevelImages { wide: image(&self.wide), inset }, views.composition(eye)))
     }
 
-    /// Composes both eyes into rectangles of their size, by [`Eye::index`].
-    pub(super) fn compose(&mut self, to: &[Destination; 2]) -> Result<(), GlError> {
+    /// Completes the images, and composes both eyes into their targets, by [`Eye::index`].
+    pub(super) fn compose(&mut self, to: &[EyeTarget; 2]) -> Result<(), GlError> {
+        self.complete();
         if self.composer.is_none() {
             self.composer = Some(Composer::new(&self.gl, GlState::Leave, false)?);
         }
         for eye in Eye::BOTH {
             if let (Some(composer), Some((images, composition))) = (&self.composer, self.eye(eye)) {
-                composer.compose(&images, &composition, &to[eye.index()]);
+                composer.compose(&images, &composition, &to[eye.index()].color);
             }
+        }
+        let Some((views, depth)) = self.views.as_ref().zip(self.depth.as_ref()).filter(|_| self.has_depth)
+        else {
+            return Ok(());
+        };
+        // The wide layer's depth was written here in place of the target.
+        let to = &to[views.shown.dominant.other().index()];
+        if let Some(DepthTarget { to, copy }) = to.depth_of_wide(views) {
+            let convention = views.shown.depth.convention;
+            copy.run(&depth.image(convention), &to, convention);
         }
         Ok(())
     }
 }
 
+impl SynthesizedDepth {
+    fn new(gl: &Rc<Context>) -> Result<SynthesizedDepth, GlError> {
+        let depth = || RenderTarget::new(gl, [1, 1], &[], Some(Format::Depth32F));
+        Ok(SynthesizedDepth { wide: depth()?, inset: depth()?, copy: DepthCopy::new(gl)? })
+    }
+
+    /// Returns the depth of the wide layer.
+    fn image(&self, convention: DepthConvention) -> DepthImage<'_> {
+        DepthImage { texture: self.wide.depth(), origin: [0, 0], layer: None, is_pair: false, convention }
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use crate::fixture::quad;
     use crate::view::RenderSettings;
     use glam::{Quat, Vec3};
-    use yoro::eyes::{DepthConvention, Foveation, Gaze};
+    use yoro::eyes::{DepthRange, Foveation, Frustum, Gaze, Pose};
+    use yoro_assets::{Material, Model, Scene};
     use yoro_context::{Backend, Headless};
 
     use super::super::tests::{Rig, equal_share, local, pair};
@@ -172,6 +250,70 @@ mod tests {
                     method == Method::Mono || around * 3 < apart,
                     "{method:?}, {eye:?}: {around} {apart}"
                 );
+            }
+        }
+        assert_eq!(gl.take_errors(), None);
+    }
+
+    /// Two checkered boards at a distance, one on each side of the inset, before a checkered wall.
+    fn boards(distance: f32) -> Scene {
+        let paint = |shade: f32| Material {
+            diffuse: Vec3::splat(shade),
+            unlit: true,
+            double_sided: true,
+            ..Material::default()
+        };
+        let materials = [0.9, 0.1, 0.5, 0.3].map(paint).to_vec();
+        let mut model = Model { materials, ..Model::default() };
+        let mut checker = |first: usize, center: Vec3, edge: f32, squares: u32| {
+            for i in 0..squares * squares {
+                let (x, y, size) = (i % squares, i / squares, edge / squares as f32);
+                let corner = center + Vec3::new(x as f32 * size, y as f32 * size, 0.0)
+                    - Vec3::new(edge / 2.0, edge / 2.0, 0.0);
+                quad(&mut model, first + ((x + y) % 2) as usize, corner, Vec3::X * size, Vec3::Y * size);
+            }
+        };
+        for side in [-1.0, 1.0] {
+            checker(0, Vec3::new(side * 0.4, side * 0.05, -1.0) * distance, 0.38 * distance, 4);
+        }
+        checker(2, Vec3::new(0.0, 0.0, -4.0), 16.0, 24);
+        Scene { name: "boards".into(), model, ..super::super::tests::scene() }
+    }
+
+    #[test]
+    fn near_things_are_whole_at_the_border_of_the_inset() {
+        let head = Headless::open(Backend::Egl).unwrap();
+        let gl = head.gl();
+        let settings = local();
+        for (distance, dominant) in [(0.31, Eye::Right), (0.25, Eye::Left)] {
+            let mut rig = Rig::of(gl, &settings, boards(distance));
+            let size = [400, 240];
+            let frustum = Frustum { left: -1.0, right: 1.0, bottom: -0.6, top: 0.6 };
+            let depth = DepthRange { near: 0.1, far: 100.0, convention: DepthConvention::Standard };
+            let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, size, dominant);
+            let views = pair.stereo_views(Some(&Foveation::MEDIUM), Gaze::Axes(pair.axes())).unwrap();
+            let mut subject =
+                StereoSession::new(gl, Method::Synthesized.into(), &settings, &options()).unwrap();
+            let mut truth =
+                StereoSession::new(gl, Method::Conventional.into(), &settings, &options()).unwrap();
+            let got = composed(&mut rig, &mut subject, &views);
+            let want = composed(&mut rig, &mut truth, &views);
+            let other = dominant.other();
+            // The middles of both boards in the other eye, 80 pixels from the middle between the eyes.
+            let aside = -other.side() * 0.0315 / distance;
+            for side in [-1.0, 1.0] {
+                let middle = ((1.0 + side * 0.4 + aside) * 200.0) as usize;
+                let row = (120.0 + side * 10.0) as usize;
+                let is_torn = |x: &usize| {
+                    let at = |y: usize| (y * 400 + x) * 4;
+                    let differs =
+                        |y: &usize| got[other.index()][at(*y)].abs_diff(want[other.index()][at(*y)]) > 60;
+                    (row - 35..row + 35).filter(differs).count() > 20
+                };
+                let columns: Vec<bool> = (middle - 35..middle + 35).map(|x| is_torn(&x)).collect();
+                let longest = columns.split(|torn| !torn).map(<[bool]>::len).max();
+                // Edges of squares are wider in the wide layer, and a pixel beside.
+                assert!(longest <= Some(2), "{distance} m, {side}: {longest:?} columns are torn");
             }
         }
         assert_eq!(gl.take_errors(), None);

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::frame::Frame;
 use super::session::FrameTargets;
 use crate::view::{DepthCopy, GpuScene, Renderer};
-use yoro::eyes::{DepthRange, Eye, EyesError, Ndc, View};
+use yoro::eyes::{DepthRange, Eye, EyesError, Ndc, StereoViews, View};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Image, RenderTarget, Texture};
 
 /// The reason why a stereo frame could not be rendered.
@@ -115,6 +115,14 @@ impl EyeTarget<'_> {
             gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
             gl.clear_rectangle(to.origin, to.size, Some(range.clear_value()));
         }
+    }
+
+    /// Returns the target of depth if that of the wide layer of views fits into it.
+    pub(super) fn depth_of_wide(&self, views: &StereoViews) -> Option<DepthTarget<'_>> {
+        let eyes = &views.wide.eyes;
+        let is_fitting =
+            |depth: &DepthTarget| depth.to.size == eyes.size && eyes.has_same_frusta(&views.shown);
+        self.depth.filter(is_fitting)
     }
 
     /// Returns a rectangle of a framebuffer, without depth.

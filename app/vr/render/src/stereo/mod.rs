@@ -4,6 +4,8 @@ mod auto;
 mod conventional;
 mod fallback;
 mod frame;
+#[cfg(test)]
+mod hole_tests;
 mod hybrid;
 mod images;
 mod method;
@@ -43,7 +45,7 @@ pub use method::{DepthTarget, EyeTarget, MotionTarget, StereoError, StereoFrame}
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
-pub use options::{Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
+pub use options::{HoleMethod, Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 pub use pipeline::Synthesis;
 pub use session::{FrameLoad, FrameReport, FrameTargets, StereoSession};

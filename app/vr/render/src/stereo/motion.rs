@@ -40,18 +40,17 @@ impl<'a> MotionFrame<'a> {
     }
 }
 
-/// Writes the vectors of an eye that was rendered by itself.
+/// Writes the vectors of an eye whose depth is known.
 pub(super) fn write_rendered(
     pass: &mut VectorPass,
     frame: &Frame,
     eye: Eye,
-    depth: &DepthImage,
+    rendered: RenderedDepth,
 ) -> Result<bool, GlError> {
     let Some(motion) = MotionFrame::new(frame) else { return Ok(false) };
     let step = motion.step(eye, motion.now.view(eye));
     pass.draw_moving(&frame.scene, &step)?;
-    let view = &frame.pair.view(eye);
-    pass.write(RenderedDepth { depth, view }, &step, [0, 0], &motion.targets[eye.index()].to)?;
+    pass.write(rendered, &step, [0, 0], &motion.targets[eye.index()].to)?;
     Ok(true)
 }
 
@@ -72,6 +71,19 @@ impl SynthesizedMotion {
             source: RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F))?,
             motion: Motion::new(gl, &Options::default(), outputs)?,
         })
+    }
+
+    /// Writes what a frame asks for, from the depths of the rendered view and of all of the other eye.
+    pub(super) fn write_known(
+        &mut self,
+        frame: &Frame,
+        rendered: RenderedDepth,
+        other: &DepthImage,
+    ) -> Result<bool, StereoError> {
+        let eye = frame.pair.dominant;
+        let other = RenderedDepth { depth: other, view: &frame.pair.view(eye.other()) };
+        let pass = &mut self.pass;
+        Ok(write_rendered(pass, frame, eye.other(), other)? && write_rendered(pass, frame, eye, rendered)?)
     }
 
     /// Writes what a frame asks for, from the depth of the rendered view. Returns false if it asks for nothing, or if the

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrameMode {
-    /// The second eye is synthesized. Objects of the near field are rendered for both eyes, if that is enabled.
+    /// The second eye is synthesized.
     #[default]
     Synthesized,
     /// Both eyes are rendered.

@@ -6,7 +6,7 @@ use crate::view::RenderSettings;
 use yoro::eyes::GuardBand;
 use yoro_gl::{Capabilities, GlError};
 use yoro_settings::FrameRate;
-pub use yoro_settings::{Method, MethodChoice, Pipeline};
+pub use yoro_settings::{HoleMethod, Method, MethodChoice, Pipeline};
 
 impl RenderSettings {
     /// Checks that a driver can run a method with this renderer. The pipelines of [`Method::Synthesized`] check their own
@@ -44,12 +44,13 @@ pub struct StereoOptions {
     pub synthesis: PipelineOptions,
     /// How much wider the dominant eye is rendered.
     pub guard_band: GuardBand,
-    /// Objects nearer than this, in metres, are rendered for both eyes.
-    pub near_field: Option<f32>,
+    /// [`Method::Synthesized`]: what becomes of pixels that the rendered eye does not show. Of eyes with an inset, the wide
+    /// layer's are filled.
+    pub holes: HoleMethod,
     /// When to render both eyes of frames that are mostly too near; `None` for never.
     pub policy: Option<NearFieldPolicy>,
     /// True if the display's runtime makes frames from the motion vectors of rendered ones ([`super::MotionTarget`]), which
-    /// [`Method::Synthesized`] without near field and [`Method::Conventional`] then write.
+    /// [`Method::Synthesized`] and [`Method::Conventional`] then write.
     pub motion_vectors: bool,
     /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
     /// `f_px * IPD / split_disparity` metres.
@@ -63,7 +64,7 @@ impl Default for StereoOptions {
         StereoOptions {
             synthesis: PipelineOptions::default(),
             guard_band: GuardBand::Distance(1.0),
-            near_field: None,
+            holes: HoleMethod::default(),
             policy: Some(NearFieldPolicy::default()),
             motion_vectors: false,
             split_disparity: 1.0,
@@ -81,5 +82,18 @@ impl StereoOptions {
             Pipeline::Paper => StereoOptions { guard_band: GuardBand::None, ..options },
             _ => options,
         }
+    }
+
+    /// Checks that a method can do what the options ask for.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] with the remedy.
+    pub(super) fn check(&self, method: Method) -> Result<(), GlError> {
+        let is_rendered = method == Method::Synthesized && self.holes == HoleMethod::Rendered;
+        if is_rendered && self.synthesis.pipeline == Pipeline::Paper {
+            let why = "the paper's pipeline fills its holes; choose the pipeline gather, or holes=filled";
+            return Err(GlError::Unsupported(why.into()));
+        }
+        Ok(())
     }
 }

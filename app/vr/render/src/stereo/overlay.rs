@@ -1,9 +1,9 @@
-//! The last pass of an eye over which more is drawn: near objects, and transparent surfaces.
+//! The last pass of an eye over which more is drawn: opaque surfaces in its holes, and transparent ones.
 
 use std::rc::Rc;
 
 use super::frame::Frame;
-use crate::view::{DepthImage, Rectangle, Renderer, Selection};
+use crate::view::{DepthImage, MARKED_DEPTH, Rectangle, Renderer};
 use yoro::eyes::{DepthConvention, Eye};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, Texture, TileTarget,
@@ -12,38 +12,41 @@ use yoro_gl::{
 /// The format of depth, as in the samples of a view.
 const DEPTH: Format = Format::Depth32F;
 
-/// What is drawn over both eyes of a frame, after the rendered one is composited and the other one synthesized.
-#[derive(Clone, Copy)]
+/// What is drawn over an eye after it is composited or synthesized.
+#[derive(Clone, Copy, Default)]
 pub(super) struct OverlaySurfaces {
-    /// The near objects, if they are left out of the synthesis.
-    pub(super) near: Option<Selection>,
     pub(super) transparent: bool,
+    /// True if the eye's holes are left open, for opaque surfaces to be drawn there first.
+    pub(super) holes: bool,
+    /// True if motion vectors are made of the eye's depth.
+    pub(super) vectors: bool,
 }
 
 impl OverlaySurfaces {
-    /// True if anything is drawn. It is then tested against the depth of either eye.
-    pub(super) fn is_any(&self) -> bool {
-        self.transparent || self.near.is_some()
+    /// True if the eye's depth is read afterwards.
+    fn keeps_depth(&self, frame: &Frame, eye: Eye) -> bool {
+        frame.wants_depth(eye) || self.vectors
     }
 
-    /// Returns the part of an eye in which its depth is needed: where anything is drawn over it, or all of it if its
-    /// depth is wanted.
+    /// Returns the part of an eye in which its depth is needed: where transparent surfaces are drawn over it, or all of it
+    /// if its depth is wanted.
     pub(super) fn depth_part(&self, frame: &Frame, eye: Eye) -> Option<Rectangle> {
-        let whole = Rectangle::whole(frame.pair.size);
-        if self.near.is_some() || frame.wants_depth(eye) {
-            return Some(whole);
+        if frame.wants_depth(eye) {
+            return Some(Rectangle::whole(frame.pair.size));
         }
         frame.scene.transparent_part(&frame.pair.view(eye)).filter(|_| self.transparent)
     }
 }
 
 /// The images in which an eye is finished. A picture and its depth are written, more is drawn over them, and the average
-/// of the samples is the eye's image: all in one pass, which reads nothing back and stores no sample.
-///
-/// If somebody reads the eye's depth, a pixel has one sample, since samples have no depth in common.
+/// of the samples is the eye's image: all in one pass, which reads nothing back, and stores no sample unless somebody reads
+/// the eye's depth. That is the same in all samples of a pixel, since transparent surfaces write none; where holes are
+/// rendered, it is that of one of them.
 pub(super) struct OverlayPass {
     gl: Rc<Context>,
     samples: u32,
+    /// The format of depth.
+    depth: Format,
     /// Samples outside tiles.
     multisample: Option<MultisampleTarget>,
     /// Samples in tiles, and the depth of one eye, which is never written.
@@ -66,13 +69,14 @@ enum OverlayTarget {
 }
 
 impl OverlayPass {
-    /// Makes it without images.
-    pub(super) fn new(renderer: &Renderer) -> Result<OverlayPass, GlError> {
+    /// Makes it without images; with `holes`, for eyes whose holes may be left open.
+    pub(super) fn new(renderer: &Renderer, holes: bool) -> Result<OverlayPass, GlError> {
         let (gl, samples) = (&renderer.gl, renderer.settings.msaa);
         let tile = (samples > 1 && gl.capabilities().tile_samples).then(|| TileTarget::new(gl, samples));
         Ok(OverlayPass {
             gl: gl.clone(),
             samples,
+            depth: if holes { MARKED_DEPTH } else { DEPTH },
             multisample: None,
             tile: tile.transpose()?.map(|tile| (tile, None)),
             image: None,
@@ -81,7 +85,8 @@ impl OverlayPass {
         })
     }
 
-    /// Returns the place to write an eye to, with depth if `over` draws anything or the eye's depth is wanted.
+    /// Returns the place to write an eye to, and true if depth is to be written there: something is drawn over the eye, or
+    /// somebody reads its depth.
     pub(super) fn begin(
         &mut self,
         frame: &Frame,
@@ -100,42 +105,63 @@ impl OverlayPass {
         over: &OverlaySurfaces,
     ) -> Result<(Destination, bool), GlError> {
         let (to, size) = (frame.to(eye), frame.pair.size);
-        let wants_depth = frame.wants_depth(eye);
-        if !over.is_any() && !wants_depth {
+        let keeps_depth = over.keeps_depth(frame, eye);
+        let is_drawn_over = over.transparent || over.holes;
+        if !is_drawn_over && !keeps_depth {
             self.target = OverlayTarget::Direct;
             return Ok((to.color, false));
         }
-        if !wants_depth && self.fit_tile(to.texture.map(|texture| (texture, size)))? {
+        if !keeps_depth && self.fit_tile(to.texture.map(|texture| (texture, size)))? {
             self.target = OverlayTarget::Tile;
             let tile = self.tile.as_ref().map(|(tile, _)| tile.part(size));
             return Ok((tile.unwrap_or(to.color), true));
         }
         // OpenGL ES averages between equal rectangles only.
-        if !wants_depth && self.samples > 1 && to.color.origin == [0, 0] {
+        if is_drawn_over && self.samples > 1 && to.color.origin == [0, 0] {
             self.target = OverlayTarget::Samples;
             let samples = match &mut self.multisample {
                 Some(samples) => samples,
                 slot => {
                     let colors = [Format::Rgba8];
-                    let made = MultisampleTarget::new(&self.gl, size, self.samples, &colors, DEPTH, false)?;
+                    let made =
+                        MultisampleTarget::new(&self.gl, size, self.samples, &colors, self.depth, false)?;
                     slot.insert(made)
                 }
             };
             samples.resize(size)?;
-            return Ok((samples.part(size), true));
+            let place = samples.part(size);
+            if keeps_depth {
+                self.fit_image(size)?;
+            }
+            return Ok((place, true));
         }
         self.target = OverlayTarget::Image;
+        Ok((Destination::whole(self.fit_image(size)?), true))
+    }
+
+    /// Returns the image of one sample, with this size.
+    fn fit_image(&mut self, size: [u32; 2]) -> Result<&RenderTarget, GlError> {
         let image = match &mut self.image {
             Some(image) => image,
-            slot => slot.insert(RenderTarget::new(
-                &self.gl,
-                size,
-                &[(Format::Rgba8, Filter::Linear)],
-                Some(DEPTH),
-            )?),
+            slot => {
+                let color = (Format::Rgba8, Filter::Linear);
+                slot.insert(RenderTarget::new(&self.gl, size, &[color], Some(self.depth))?)
+            }
         };
         image.resize(size)?;
-        Ok((Destination::whole(image), true))
+        Ok(image)
+    }
+
+    /// Returns the number of samples in a pixel of the current eye.
+    pub(super) fn samples(&self) -> u32 {
+        if self.target == OverlayTarget::Image { 1 } else { self.samples }
+    }
+
+    /// Returns the depth of the eye that was finished last, if somebody reads it.
+    pub(super) fn depth(&self) -> Option<DepthImage<'_>> {
+        let convention = DepthConvention::Reversed;
+        let image = |texture| DepthImage { texture, origin: [0, 0], layer: None, is_pair: false, convention };
+        self.image.as_ref().map(|made| image(made.depth()))
     }
 
     /// Attaches an eye's texture to the tiles; false if there are no such tiles, or no texture.
@@ -146,7 +172,7 @@ impl OverlayPass {
         }
         let depth = match depth.take().filter(|depth| depth.size() == size) {
             Some(made) => depth.insert(made),
-            None => depth.insert(Texture::new(&self.gl, size, DEPTH, Filter::Nearest)?),
+            None => depth.insert(Texture::new(&self.gl, size, self.depth, Filter::Nearest)?),
         };
         // SAFETY: the caller's texture, by the contract of `EyeTarget`.
         Ok(unsafe { tile.fit(&[color], depth) }.is_ok())
@@ -158,33 +184,35 @@ impl OverlayPass {
             return;
         }
         let view = frame.pair.view(eye);
-        let samples = if self.target == OverlayTarget::Image { 1 } else { self.samples };
-        if over.is_any() {
+        if over.transparent {
             let place = &self.place;
             self.gl.bind_framebuffer(place.framebuffer, place.origin, place.size);
-            frame.renderer.draw_over(&frame.scene, &view, over.near, samples);
+            frame.renderer.draw_over(&frame.scene, &view, self.samples());
         }
         match (self.target, &self.multisample, &self.tile, &self.image) {
             (OverlayTarget::Samples, Some(samples), ..) => {
                 let pass = self.gl.pass("resolve").in_tile(samples.images());
+                let depth = self.image.as_ref().filter(|_| over.keeps_depth(frame, eye));
+                let pass = pass.write(depth.map(|image| image.depth().image()));
                 pass.write([frame.to(eye).color.image(Format::Rgba8)]).run(|| {
                     samples.average(0, &frame.to(eye).color);
+                    if let Some(image) = depth {
+                        samples.copy_depth(image);
+                    }
                     samples.discard(true, true);
                 });
+                if let Some(depth) = self.depth().filter(|_| depth.is_some()) {
+                    frame.write_depth(eye, &depth);
+                }
             }
             (OverlayTarget::Tile, _, Some((tile, _)), _) => tile.discard_depth(),
             (OverlayTarget::Image, .., Some(image)) => {
                 let to = &frame.to(eye).color;
                 let pass = self.gl.pass("copy").read("copied", image.color(0));
                 pass.write([to.image(Format::Rgba8)]).run(|| image.copy_color([0, 0], to));
-                let depth = DepthImage {
-                    texture: image.depth(),
-                    origin: [0, 0],
-                    layer: None,
-                    is_pair: false,
-                    convention: DepthConvention::Reversed,
-                };
-                frame.write_depth(eye, &depth);
+                if let Some(depth) = self.depth() {
+                    frame.write_depth(eye, &depth);
+                }
             }
             _ => {}
         }

@@ -6,7 +6,7 @@ use super::auto::Auto;
 use super::fallback::{Fallback, FallbackReason, NearSwitch};
 use super::frame::Frame;
 use super::images::{LayerTargets, StereoImages};
-use super::method::{DepthTarget, EyeTarget, StereoError, StereoMethod};
+use super::method::{EyeTarget, StereoError, StereoMethod};
 use super::options::{Method, MethodChoice, StereoOptions};
 use super::rate::RateChooser;
 use crate::prepared::PreparedScene;
@@ -37,7 +37,7 @@ impl FrameTargets<'_> {
     /// [`GlError`] if the driver has no memory for the images.
     pub fn fill(self, gl: &Context, views: &StereoViews, color: [f32; 4]) -> Result<(), GlError> {
         let layers = match self {
-            FrameTargets::Images(images) => images.fit(views)?,
+            FrameTargets::Images(images) => images.fit(views, false)?,
             FrameTargets::Layers(layers) => layers,
             FrameTargets::Eyes(wide) => LayerTargets { wide, inset: None },
         };
@@ -121,6 +121,7 @@ impl StereoSession {
     ) -> Result<StereoSession, GlError> {
         let method = choice.first();
         settings.supports(method, gl.capabilities())?;
+        options.check(method)?;
         let is_auto = choice == MethodChoice::Auto;
         let mut session = StereoSession {
             gl: gl.clone(),
@@ -214,23 +215,22 @@ impl StereoSession {
         if let Some(load) = previous {
             self.take_load(load);
         }
+        let Plan { path, fallback, counts } = self.plan(views, scene)?;
+        let is_synthesized = path == StereoPath::Synthesis && self.method == Method::Synthesized;
         // Eyes with an inset are composed of images of this session.
-        let mut images = match &targets {
+        let mut own = match &targets {
             FrameTargets::Eyes(_) if views.inset.is_some() => Some(self.take_images()?),
             _ => None,
         };
-        let (to, composed) = match targets {
-            FrameTargets::Images(images) => (images.fit(views)?, None),
-            FrameTargets::Layers(layers) => (layers, None),
-            FrameTargets::Eyes(to) => match &mut images {
-                None => (LayerTargets { wide: to, inset: None }, None),
-                Some(images) => {
-                    let layers = self.layers_of(images.fit(views)?, views, &to);
-                    (layers, Some(to.map(|eye| eye.color)))
-                }
-            },
+        let mut targets = targets;
+        let to = match (&mut targets, &mut own) {
+            (FrameTargets::Images(images), _) => images.fit(views, is_synthesized)?,
+            (FrameTargets::Layers(layers), _) => *layers,
+            (FrameTargets::Eyes(to), None) => LayerTargets { wide: *to, inset: None },
+            (FrameTargets::Eyes(to), Some(images)) => {
+                self.layers_of(images.fit(views, is_synthesized)?, views, to)
+            }
         };
-        let Plan { path, fallback, counts } = self.plan(views, scene)?;
         if self.auto.as_mut().is_some_and(|auto| counts && auto.take_new()) {
             // Makes everything that the other method needs now, while the scene comes into view, rather than in its first
             // turn.
@@ -243,11 +243,13 @@ impl StereoSession {
         if let Some(auto) = &mut self.auto {
             auto.end((counts && fallback.is_none()).then_some(path), begin, &to);
         }
-        if let Some((images, to)) = images.as_mut().zip(composed) {
-            images.compose(&to)?;
-        }
-        self.images = images.or(self.images.take());
         let has_depth = to.wide.iter().all(|eye| eye.depth.is_some());
+        match (targets, &mut own) {
+            (FrameTargets::Images(images), _) => images.complete(),
+            (FrameTargets::Eyes(to), Some(images)) => images.compose(&to)?,
+            _ => {}
+        }
+        self.images = own.or(self.images.take());
         Ok(FrameReport { fallback, has_motion, has_depth })
     }
 
@@ -279,19 +281,19 @@ impl StereoSession {
     /// Returns the targets of layers that are composed into the eyes' targets.
     fn layers_of<'a>(
         &self,
-        images: LayerTargets<'static>,
+        images: LayerTargets<'a>,
         views: &StereoViews,
-        to: &[EyeTarget<'a>; 2],
+        to: &'a [EyeTarget<'a>; 2],
     ) -> LayerTargets<'a> {
-        let mut layers: LayerTargets<'a> = images;
+        let mut layers = images;
         let has_same_frusta = views.wide.eyes.has_same_frusta(&views.shown);
         for (layer, to) in layers.wide.iter_mut().zip(to) {
             layer.motion = to.motion.filter(|_| has_same_frusta);
-            let fits = |depth: &DepthTarget| depth.to.size == views.wide.eyes.size;
-            layer.depth = to.depth.filter(|depth| has_same_frusta && fits(depth));
-            if layer.depth.is_none() {
+            let depth = to.depth_of_wide(views);
+            if depth.is_none() {
                 to.clear_depth(&self.gl, views.shown.depth);
             }
+            layer.depth = layer.depth.or(depth);
         }
         layers
     }
@@ -353,11 +355,13 @@ impl LayerMethods {
         near: Option<&mut NearSwitch>,
     ) -> Result<bool, StereoError> {
         let shown = views.inset.map(|_| &views.shown);
-        let mut render = |method: &mut Box<dyn StereoMethod>, layer, to, near| {
+        let mut render = |method: &mut Box<dyn StereoMethod>, layer, to, near, fills_holes| {
             method.prepare(&mut scene.renderer, &scene.scene)?;
-            method.render(&Frame::new(&scene.renderer, &scene.scene, layer, shown, to)?.measured_by(near))
+            let frame = Frame::new(&scene.renderer, &scene.scene, layer, shown, to)?;
+            method.render(&frame.measured_by(near).with_filled_holes(fills_holes))
         };
-        let has_motion = render(&mut self.wide, &views.wide, &to.wide, near)?;
+        // Where an inset is seen best, the layer around it is seen worst.
+        let has_motion = render(&mut self.wide, &views.wide, &to.wide, near, views.inset.is_some())?;
         if let Some((layer, to)) = views.inset.as_ref().zip(to.inset.as_ref()) {
             let inset = match self.inset.take() {
                 Some(inset) => inset,
@@ -367,7 +371,7 @@ impl LayerMethods {
                     super::create(&self.gl, self.method, &options)?
                 }
             };
-            render(self.inset.insert(inset), layer, to, None)?;
+            render(self.inset.insert(inset), layer, to, None, false)?;
         }
         Ok(has_motion)
     }

@@ -31,8 +31,11 @@ impl StereoMethod for ShadingReprojection {
         renderer.prepare_reprojected(scene)?;
         if self.made.is_none() {
             let targets = || renderer.targets(Layout::Single);
-            self.made =
-                Some(Made { dominant: targets()?, second: targets()?, over: OverlayPass::new(renderer)? });
+            self.made = Some(Made {
+                dominant: targets()?,
+                second: targets()?,
+                over: OverlayPass::new(renderer, false)?,
+            });
         }
         Ok(())
     }
@@ -64,7 +67,8 @@ impl StereoMethod for ShadingReprojection {
         if wants_depth {
             frame.write_depth(other, &second.depth(view.size, Eye::Left, [0, 0]));
         }
-        let surfaces = OverlaySurfaces { near: None, transparent: frame.scene.is_transparent_in(&view) };
+        let transparent = frame.scene.is_transparent_in(&view);
+        let surfaces = OverlaySurfaces { transparent, ..OverlaySurfaces::default() };
         let (place, has_depth) = over.begin(frame, eye, &surfaces)?;
         let part = surfaces.depth_part(frame, eye).filter(|_| has_depth);
         renderer.composite(dominant, &view, Eye::Left, [0, 0], &place, part);

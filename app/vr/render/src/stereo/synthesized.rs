@@ -5,18 +5,24 @@ use std::rc::Rc;
 use super::frame::Frame;
 use super::method::{StereoError, StereoMethod};
 use super::motion::SynthesizedMotion;
-use super::options::{Pipeline, PipelineOptions, StereoOptions};
+use super::options::{HoleMethod, Pipeline, PipelineOptions, StereoOptions};
 use super::overlay::{OverlayPass, OverlaySurfaces};
 use super::pipeline::Synthesis;
-use crate::view::{DepthResolve, GpuScene, Layout, RenderedDepth, Renderer, Selection, Targets};
-use yoro::eyes::{Eye, EyePair};
+use crate::view::{
+    DepthResolve, GpuScene, HoleSource, InkedHoles, Layout, RenderedDepth, Renderer, Targets,
+};
+use yoro::eyes::{Eye, SynthesisViews};
 use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Source};
+use yoro::synthesis::{HoleMark, Holes};
 use yoro_gl::{Context, Destination, GlError};
 
-/// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects.
+/// One render with a guard band and one synthesis.
 ///
-/// Bloom is added where an eye is written last: by the synthesis, and where the rendered eye is composited. Near objects
-/// and transparent surfaces are drawn over both in the same passes.
+/// With [`HoleMethod::Rendered`], the synthesis leaves holes open, and opaque surfaces are drawn there, with the bloom that they
+/// have in the rendered eye.
+///
+/// Bloom is added where an eye is written last: by the synthesis, and where the rendered eye is composited. Transparent
+/// surfaces are drawn over both in the same passes.
 pub struct Synthesized {
     gl: Rc<Context>,
     options: StereoOptions,
@@ -29,12 +35,14 @@ pub struct Synthesized {
 struct Made {
     targets: Targets,
     over: OverlayPass,
+    /// Where holes are rendered that have outlines.
+    inked: Option<InkedHoles>,
     synthesizers: Synthesizers,
     /// Makes more of the depth of one sample, where a driver gives no more.
     guess: Option<GuessedDepth>,
 }
 
-/// Pipelines without and with depth of the synthesized eye, each made when first needed.
+/// Pipelines by [`Kind`], each made when first needed.
 struct Synthesizers {
     gl: Rc<Context>,
     options: PipelineOptions,
@@ -42,17 +50,32 @@ struct Synthesizers {
     pairs: bool,
     /// True if the source lacks its bloom.
     bloom: bool,
-    made: [Option<Box<dyn Synthesis>>; 2],
+    made: [Option<Box<dyn Synthesis>>; 3],
+}
+
+/// What a pipeline makes of the other eye.
+#[derive(Clone, Copy)]
+enum Kind {
+    Color,
+    ColorDepth,
+    /// Colour and depth, except in holes.
+    OpenHoles,
 }
 
 impl Synthesizers {
-    /// Returns the pipeline with or without depth, and makes it on the first call.
-    fn get(&mut self, depth: bool) -> Result<&mut Box<dyn Synthesis>, GlError> {
-        let slot = &mut self.made[usize::from(depth)];
+    /// Returns the pipeline of a kind, and makes it on the first call.
+    fn get(&mut self, kind: Kind) -> Result<&mut Box<dyn Synthesis>, GlError> {
+        let slot = &mut self.made[kind as usize];
         if let Some(made) = slot {
             return Ok(made);
         }
-        let outputs = Outputs { depth, ..Outputs::default() };
+        let outputs = match kind {
+            Kind::Color => Outputs::default(),
+            Kind::ColorDepth => Outputs { depth: true, ..Outputs::default() },
+            Kind::OpenHoles => {
+                Outputs { depth: true, holes: Holes::Open(HoleMark::Stencil), ..Outputs::default() }
+            }
+        };
         let synthesis: Box<dyn Synthesis> = match self.options.pipeline {
             Pipeline::Gather => {
                 let options = Options { depth_pairs: self.pairs, bloom: self.bloom, ..Options::default() };
@@ -74,18 +97,15 @@ impl Synthesized {
     fn composites_first(&self) -> bool {
         self.options.synthesis.pipeline == Pipeline::Paper
     }
-
-    /// Returns the objects that are synthesized.
-    fn selection(&self, pair: &EyePair) -> Selection {
-        let from = pair.middle();
-        self.options.near_field.map_or(Selection::All, |distance| Selection::Farther { from, distance })
-    }
 }
 
 impl StereoMethod for Synthesized {
     fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
-        let has_over = scene.has_transparent() || self.options.near_field.is_some();
+        let renders_holes = self.options.holes == HoleMethod::Rendered;
         renderer.prepare_over(scene)?;
+        if renders_holes {
+            renderer.prepare_holes(scene)?;
+        }
         let pairs = renderer.depth_resolve == DepthResolve::InColor;
         let is_first = renderer.depth_resolve == DepthResolve::SingleSample;
         let made = match &mut self.made {
@@ -93,22 +113,26 @@ impl StereoMethod for Synthesized {
             slot => slot.insert(Made {
                 guess: is_first.then(|| GuessedDepth::new(&self.gl, &Options::default())).transpose()?,
                 targets: renderer.targets(Layout::Single)?,
-                over: OverlayPass::new(renderer)?,
+                over: OverlayPass::new(renderer, renders_holes)?,
+                inked: (renders_holes && renderer.inks_holes())
+                    .then(|| InkedHoles::new(renderer))
+                    .transpose()?,
                 synthesizers: Synthesizers {
                     gl: self.gl.clone(),
                     options: self.options.synthesis,
                     pairs,
                     bloom: renderer.has_composite(),
-                    made: [None, None],
+                    made: [const { None }; 3],
                 },
             }),
         };
-        // With a near field, the source lacks what is near, and its vectors.
-        if self.motion.is_none() && self.options.motion_vectors && self.options.near_field.is_none() {
+        if self.motion.is_none() && self.options.motion_vectors {
             self.motion = Some(SynthesizedMotion::new(&self.gl, pairs)?);
         }
-        for depth in [false, true].into_iter().take(1 + usize::from(has_over)) {
-            made.synthesizers.get(depth)?;
+        let has_over = scene.has_transparent();
+        let kinds = [(Kind::Color, true), (Kind::ColorDepth, has_over), (Kind::OpenHoles, renders_holes)];
+        for (kind, _) in kinds.into_iter().filter(|(_, is_needed)| *is_needed) {
+            made.synthesizers.get(kind)?;
         }
         Ok(())
     }
@@ -118,14 +142,14 @@ impl StereoMethod for Synthesized {
         let renderer = frame.renderer;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let views = frame.synthesis_views(self.options.guard_band)?;
-        let from = pair.middle();
-        let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
         let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
-        let surfaces = OverlaySurfaces { near, transparent };
-        let selection = self.selection(pair);
+        let renders_holes = self.options.holes == HoleMethod::Rendered && !frame.fills_holes;
+        let surfaces = OverlaySurfaces { transparent, ..OverlaySurfaces::default() };
         let composites_first = self.composites_first();
-        let Some(Made { targets, over, synthesizers, guess }) = &mut self.made else { return Ok(false) };
-        renderer.draw_source(targets, &frame.scene, &views.source, selection)?;
+        let Some(Made { targets, over, inked, synthesizers, guess }) = &mut self.made else {
+            return Ok(false);
+        };
+        renderer.draw_source(targets, &frame.scene, &views.source)?;
         let is_composited = composites_first && renderer.has_composite();
         if is_composited {
             let to = Destination::whole(targets.picture(views.source.size)?);
@@ -137,25 +161,71 @@ impl StereoMethod for Synthesized {
         if let Some(guess) = guess {
             source = guess.guess(source, &views.warp)?;
         }
-        // The other eye first: both are finished in the same samples.
-        let (to, has_depth) = over.begin(frame, other, &surfaces)?;
-        let synthesis = synthesizers.get(has_depth)?;
         source.bloom = targets
             .bloom
             .as_ref()
             .filter(|_| !is_composited)
             .map(|bloom| Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() });
-        synthesis.synthesize(source, &views.warp, &to)?;
-        over.finish(frame, other, &surfaces);
-        // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
+        // The other eye first: both are finished in the same samples.
+        let vectors = renders_holes && frame.to(other).motion.is_some();
+        let other_surfaces = OverlaySurfaces { holes: renders_holes, vectors, ..surfaces };
+        let (to, has_depth) = over.begin(frame, other, &other_surfaces)?;
+        if renders_holes {
+            let synthesis = synthesizers.get(Kind::OpenHoles)?;
+            let samples = over.samples();
+            let rendered = Rendered { source, targets, views: &views };
+            rendered.render_other(frame, synthesis.as_mut(), inked.as_mut(), (&to, samples))?;
+        } else {
+            let kind = if has_depth { Kind::ColorDepth } else { Kind::Color };
+            synthesizers.get(kind)?.synthesize(source, &views.warp, &to)?;
+        }
+        over.finish(frame, other, &other_surfaces);
+        let Some(Made { targets, over, .. }) = &mut self.made else { return Ok(false) };
+        let rendered = targets.depth(views.source.size, Eye::Left, [0, 0]);
+        let rendered = RenderedDepth { depth: &rendered, view: &views.source };
+        let mut has_motion = false;
+        if let (Some(motion), Some(depth)) = (&mut self.motion, over.depth().filter(|_| vectors)) {
+            has_motion = motion.write_known(frame, rendered, &depth)?;
+        }
         frame.measure_depth(&targets.depth(views.source.size, Eye::Left, views.dominant_crop))?;
         let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
         let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
         renderer.composite(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
         over.finish(frame, dominant, &surfaces);
-        let Some(motion) = &mut self.motion else { return Ok(false) };
-        let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
-        let rendered = RenderedDepth { depth: &depth, view: &views.source };
+        let Some(motion) = self.motion.as_mut().filter(|_| !vectors) else { return Ok(has_motion) };
         motion.write(frame, rendered, self.options.guard_band)
+    }
+}
+
+/// A rendered view, of which the other eye is made.
+struct Rendered<'a> {
+    source: Source,
+    targets: &'a Targets,
+    views: &'a SynthesisViews,
+}
+
+impl Rendered<'_> {
+    /// Synthesizes the other eye into a place with this many samples, and renders its holes.
+    fn render_other(
+        &self,
+        frame: &Frame,
+        synthesis: &mut dyn Synthesis,
+        inked: Option<&mut InkedHoles>,
+        (to, samples): (&Destination, u32),
+    ) -> Result<(), GlError> {
+        let (renderer, warp) = (frame.renderer, &self.views.warp);
+        let view = frame.pair.view(frame.pair.dominant.other());
+        let source = HoleSource { targets: self.targets, warp };
+        let mut draw = |to: &Destination, samples, inked: Option<&InkedHoles>| {
+            synthesis.synthesize(self.source, warp, to)?;
+            inked.inspect(|inked| inked.mark(to));
+            renderer.draw_holes(&frame.scene, &view, to, samples, &source);
+            Ok::<(), GlError>(())
+        };
+        let Some(inked) = inked else { return draw(to, samples, None) };
+        let (place, samples) = inked.fit(view.size)?;
+        draw(&place, samples, Some(inked))?;
+        renderer.ink_holes(inked, &view, frame.scene.detail(&view), to, &source);
+        Ok(())
     }
 }

@@ -132,62 +132,24 @@ fn gather_units(model: &Model, units: &mut [Unit], triangles: &[u32], built: &mu
     gather_units(model, high, triangles, built);
 }
 
-/// A selection of a scene's objects.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Selection {
-    /// All objects.
-    #[default]
-    All,
-    /// Objects whose bounds come nearer to `from` than `distance` metres.
-    Nearer {
-        /// Usually the midpoint between the eyes.
-        from: Vec3,
-        /// Metres.
-        distance: f32,
-    },
-    /// The complement of `Nearer`: all other objects.
-    Farther {
-        /// Usually the midpoint between the eyes.
-        from: Vec3,
-        /// Metres.
-        distance: f32,
-    },
-}
-
-impl Selection {
-    fn contains(&self, bounds: &Bounds) -> bool {
-        match *self {
-            Selection::All => true,
-            Selection::Nearer { from, distance } => bounds.distance(from) < distance,
-            Selection::Farther { from, distance } => bounds.distance(from) >= distance,
-        }
-    }
-}
-
-/// Decides what is drawn in a view: what lies in its clip volume and in a selection.
+/// Decides what is drawn in a view: what lies in its clip volume.
 #[derive(Clone, Copy, Debug)]
 pub struct Culler {
     planes: [Vec4; 6],
     eye: Vec3,
-    selection: Selection,
 }
 
 impl Culler {
     /// Makes a culler for everything in a view.
     pub fn of_view(view: &View) -> Culler {
-        Culler::selecting(view, Selection::All)
-    }
-
-    /// Makes a culler for the part of a selection that a view shows.
-    pub fn selecting(view: &View, selection: Selection) -> Culler {
-        Culler::new(view.pose.position, &eye_to_clip(view), selection)
+        Culler::new(view.pose.position, &eye_to_clip(view))
     }
 
     /// Makes a culler for the clip volume of `eye_to_clip`, which takes positions relative to `eye`.
-    pub fn new(eye: Vec3, eye_to_clip: &Mat4, selection: Selection) -> Culler {
+    pub fn new(eye: Vec3, eye_to_clip: &Mat4) -> Culler {
         let m = eye_to_clip.transpose();
         let (x, y, z, w) = (m.x_axis, m.y_axis, m.z_axis, m.w_axis);
-        Culler { planes: [w + x, w - x, w + y, w - y, w + z, w - z], eye, selection }
+        Culler { planes: [w + x, w - x, w + y, w - y, w + z, w - z], eye }
     }
 
     /// True if any part of the box may be seen.
@@ -199,7 +161,7 @@ impl Culler {
             // The slack covers the rounding of the planes; an infinite far plane is rounded most.
             let reach = normal.abs().dot(min.abs().max(max.abs())) + plane.w.abs();
             normal.dot(farthest) + plane.w >= -1e-5 * reach
-        }) && self.selection.contains(bounds)
+        })
     }
 
     /// True if any part of the sphere may be seen.
@@ -362,22 +324,14 @@ mod tests {
     }
 
     #[test]
-    fn adjacent_ranges_merge_and_near_plus_far_is_all() {
+    fn adjacent_ranges_merge() {
         let mut rng = Pcg64::seed_from_u64(4);
         let model = random_model(&mut rng);
         let built = build(&model);
         for _ in 0..50 {
-            let view = random_view(&mut rng);
-            let (from, distance) = (view.pose.position, rng.random_range(1.0..40.0));
-            let drawn = |selection| {
-                let culler = Culler::new(from, &eye_to_clip(&view), selection);
-                let ranges: Vec<_> = culler.visible(&built.clusters).collect();
-                assert!(ranges.windows(2).all(|w| w[0].end < w[1].start), "adjacent ranges are one");
-                ranges.iter().map(|r| r.len()).sum::<usize>()
-            };
-            let near = drawn(Selection::Nearer { from, distance });
-            let far = drawn(Selection::Farther { from, distance });
-            assert_eq!(near + far, drawn(Selection::All));
+            let culler = Culler::of_view(&random_view(&mut rng));
+            let ranges: Vec<_> = culler.visible(&built.clusters).collect();
+            assert!(ranges.windows(2).all(|w| w[0].end < w[1].start), "adjacent ranges are one");
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use glam::IVec2;
+use glam::Vec4;
 
 use yoro::eyes::DepthConvention;
 use yoro_gl::{Context, Destination, Format, GlError, Program, RasterState, ShaderSource, Texture};
@@ -130,17 +130,28 @@ impl DepthCopy {
 
     /// Writes the destination's depth, in this convention.
     pub fn run(&self, from: &DepthImage, to: &Destination, convention: DepthConvention) {
+        self.run_scaled(from, to, convention, [[1.0; 2], [0.0; 2]]);
+    }
+
+    /// Like [`DepthCopy::run`], of what lies at `scale * p + first` in the image for a place `p` in the destination, in
+    /// pixels from the lower left corners.
+    pub(crate) fn run_scaled(
+        &self,
+        from: &DepthImage,
+        to: &Destination,
+        convention: DepthConvention,
+        [scale, first]: [[f32; 2]; 2],
+    ) {
         let Some(program) = &self.program.made[from.variant()] else { return };
         let pass = self.gl.pass("depth copy").read("depth_map", from.texture);
         pass.write([to.image(Format::Depth32F)]).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
             self.gl.overwrite(to, 0, true);
-            let offset =
-                IVec2::from(from.origin.map(|n| n as i32)) - IVec2::from(to.origin.map(|n| n as i32));
+            let shift = |i: usize| from.origin[i] as f32 + first[i] - scale[i] * to.origin[i] as f32;
             program
                 .bind()
                 .texture_of("depth_map", 0, from.texture)
-                .set("offset", offset)
+                .set("place", Vec4::new(scale[0], scale[1], shift(0), shift(1)))
                 .set("reverse", from.convention != convention)
                 .set("view_layer", from.layer.unwrap_or(0) as i32);
             self.gl.draw_screen();

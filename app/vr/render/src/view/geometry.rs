@@ -9,7 +9,7 @@ use super::layout::{Layout, Seam};
 use super::scene::{Features, GpuScene};
 use super::uniforms::{depth_test, eye_to_clip};
 use yoro::eyes::{DepthRange, Eye, View};
-use yoro_gl::{Blend, Context, GlError, Program, RasterState, ShaderSource};
+use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, StencilTest};
 
 /// Which of the opaque triangles are drawn.
 #[derive(Clone, Copy)]
@@ -31,12 +31,20 @@ pub struct Variant {
     pub carried: bool,
     /// True if the dominant eye's colours are taken where it sees the surface (`include/reprojection.glsl`).
     pub reprojected: bool,
+    /// True if only the holes of a synthesized eye are drawn, with the bloom of the rendered one
+    /// (`include/hole_bloom.glsl`).
+    pub holes: bool,
 }
 
 impl Variant {
     /// Returns the variant that draws one view, and nothing besides.
     pub fn plain(samples: u32) -> Variant {
-        Variant { layout: Layout::Single, samples, carried: false, reprojected: false }
+        Variant { layout: Layout::Single, samples, carried: false, reprojected: false, holes: false }
+    }
+
+    /// Returns the stencil test of opaque surfaces and sky.
+    pub fn stencil(self) -> StencilTest {
+        if self.holes { StencilTest::Equal(0) } else { StencilTest::Off }
     }
 
     /// Returns the defines of `render/geometry.vert`, `render/forward.frag` and `render/transparent.frag`.
@@ -168,6 +176,7 @@ impl GeometryPass {
         depth_window: [f32; 2],
     ) {
         let depth = depth_test(view.depth.convention);
+        let stencil = self.variant.stencil();
         self.gl.set_depth_window(depth_window);
         if eyes.are_clipped() {
             self.gl.set_clip_distance(true);
@@ -179,7 +188,7 @@ impl GeometryPass {
             if ranges.peek().is_none() {
                 continue;
             }
-            let state = RasterState { depth, blend: Blend::Off, cull: !material.double_sided };
+            let state = RasterState { depth, cull: !material.double_sided, stencil, ..RasterState::SCREEN };
             self.gl.set_raster_state(&state);
             if self.alpha_to_coverage {
                 self.gl.set_alpha_to_coverage(material.features.contains(Features::CUTOUT));

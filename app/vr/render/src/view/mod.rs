@@ -6,6 +6,7 @@ mod cluster;
 mod coverage;
 mod depth;
 mod geometry;
+mod holes;
 mod layout;
 mod light_tiles;
 mod lights;
@@ -31,9 +32,9 @@ mod vectors;
 #[cfg(test)]
 mod vectors_tests;
 
-pub use cluster::Selection;
 pub(crate) use depth::DepthProgram;
 pub use depth::{DepthCopy, DepthImage, DepthResolve};
+pub(crate) use holes::{HoleSource, InkedHoles, MARKED_DEPTH};
 pub(crate) use layout::{Layout, Seam};
 pub(crate) use lit::LitScene;
 pub(crate) use passes::Reprojection;

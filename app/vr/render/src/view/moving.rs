@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::cluster::{Batch, Cluster, VERTEX_ATTRIBUTES};
-use yoro_assets::{Model, Moment, Motion, Part};
+use yoro_assets::{Jumps, Model, Moment, Motion, Part, Vertex};
 use yoro_gl::{Context, GlError, Mesh};
 
 /// Vertices that are computed on the CPU and rewritten whenever the time changes. Each moving part of the model is a
@@ -16,13 +16,18 @@ pub struct Moving {
     /// Index of the first piece's cluster; the others follow it.
     first: usize,
     seconds: f64,
-    /// True if the last [`Moving::set_time`] moved everything on in a short step. After a jump, or when a loop starts over,
-    /// nothing would go on as it came.
+    /// The vertices before the last [`Moving::set_time`].
+    previous: Vec<Vertex>,
+    jumps: Jumps,
+    /// True if the last [`Moving::set_time`] moved the scene on in a short step. After a long one nothing would go on as it
+    /// came.
     has_moved: bool,
 }
 
 /// The longest step in seconds that is not a jump.
 const LONGEST_STEP: f64 = 0.25;
+/// What is faster, in metres per second, has jumped.
+const HIGHEST_SPEED: f64 = 10.0;
 
 /// A part that moves.
 struct Piece {
@@ -64,7 +69,18 @@ impl Moving {
         model.parts = still;
         let moment = motion.start();
         let mesh = Mesh::rewritable(gl, &VERTEX_ATTRIBUTES, &moment.vertices, &indices)?;
-        Ok(Some(Moving { motion, moment, mesh, pieces, first: 0, seconds: 0.0, has_moved: false }))
+        let (previous, jumps) = (moment.vertices.clone(), Jumps::default());
+        Ok(Some(Moving {
+            motion,
+            moment,
+            mesh,
+            pieces,
+            first: 0,
+            seconds: 0.0,
+            previous,
+            jumps,
+            has_moved: false,
+        }))
     }
 
     /// Appends the moving parts to a scene's clusters, in batches of their own after those of the still parts.
@@ -102,16 +118,35 @@ impl Moving {
         if seconds == self.seconds {
             return false;
         }
-        let mut loops =
-            self.motion.loops.iter().map(|&length| f64::from(length)).filter(|length| *length > 0.0);
-        let starts_over = |length: f64| (self.seconds / length).floor() != (seconds / length).floor();
-        self.has_moved = (seconds - self.seconds).abs() < LONGEST_STEP && !loops.any(starts_over);
-        self.seconds = seconds;
+        let before = std::mem::replace(&mut self.seconds, seconds);
+        self.has_moved = (seconds - before).abs() < LONGEST_STEP;
+        std::mem::swap(&mut self.moment.vertices, &mut self.previous);
         self.motion.at(seconds, &mut self.moment);
         self.mesh.rewrite(&self.moment.vertices);
+        if self.has_moved {
+            self.forget_jumps([before, seconds]);
+        }
         for (piece, cluster) in self.pieces.iter().zip(&mut clusters[self.first..]) {
             cluster.bounds = self.moment.bounds[piece.moved];
         }
         true
+    }
+
+    /// Makes the present vertices the previous ones of what has jumped between two times.
+    fn forget_jumps(&mut self, times: [f64; 2]) {
+        self.motion.find_jumps(times, &mut self.jumps);
+        let farthest = (HIGHEST_SPEED * (times[1] - times[0]).abs()) as f32;
+        let mut first = 0;
+        for (mesh, jumps) in self.motion.meshes.iter().zip(&self.jumps.meshes) {
+            let vertices = first..first + mesh.vertices.len();
+            first = vertices.end;
+            let now = &self.moment.vertices[vertices.clone()];
+            let is_fast = |(now, then): (&Vertex, &Vertex)| {
+                now.position.distance_squared(then.position) > farthest * farthest
+            };
+            if *jumps || now.iter().zip(&self.previous[vertices.clone()]).any(is_fast) {
+                self.mesh.rewrite_previous(vertices.start, now);
+            }
+        }
     }
 }

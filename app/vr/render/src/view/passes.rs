@@ -3,7 +3,7 @@
 use glam::{IVec2, Mat3, Vec2, Vec3};
 
 use super::bloom::Shining;
-use super::cluster::{Culler, Selection};
+use super::cluster::Culler;
 use super::depth::DepthImage;
 use super::geometry::{Surfaces, Variant};
 use super::layout::Layout;
@@ -71,7 +71,12 @@ pub(crate) struct Reprojection<'a> {
 
 impl Renderer {
     /// Returns the light of the views in an image of this layout, for positions relative to the first view.
-    fn illuminate<'a>(&'a self, layout: Layout, scene: &LitScene<'a>, views: &[View]) -> Illumination<'a> {
+    pub(super) fn illuminate<'a>(
+        &'a self,
+        layout: Layout,
+        scene: &LitScene<'a>,
+        views: &[View],
+    ) -> Illumination<'a> {
         let lights = self.lights(scene, views);
         Illumination {
             scene: scene.scene(),
@@ -123,12 +128,12 @@ impl Renderer {
                     set_reprojection(program, from, view);
                 }
             });
-            self.draw_sky(targets, &light, views);
+            self.draw_sky(Renderer::variant(targets), &light, views, |_| {});
         });
     }
 
     /// Draws and lights the opaque surfaces that nothing in the bound framebuffer hides.
-    fn draw_opaque(
+    pub(super) fn draw_opaque(
         &self,
         variant: Variant,
         light: &Illumination,
@@ -145,10 +150,15 @@ impl Renderer {
     }
 
     /// Draws the sky where nothing was drawn.
-    fn draw_sky(&self, targets: &Targets, light: &Illumination, views: &[View]) {
-        let variant = Renderer::variant(targets);
+    pub(super) fn draw_sky(
+        &self,
+        variant: Variant,
+        light: &Illumination,
+        views: &[View],
+        more: impl Fn(&Program),
+    ) {
         let Some((_, program)) = self.skies.iter().find(|(made, _)| *made == variant) else { return };
-        let layout = targets.layout;
+        let (layout, stencil) = (variant.layout, variant.stencil());
         // With multiview, one triangle is drawn for both eyes.
         let rays: [Mat3; 2] = std::array::from_fn(|i| view_rays(views.get(i).unwrap_or(&views[0])));
         let drawn = if layout == Layout::Layered { 1 } else { views.len() };
@@ -156,14 +166,19 @@ impl Renderer {
             let view = &views[i];
             let origin = layout.origin(view.size, eye);
             self.gl.set_viewport(origin, view.size);
-            self.gl.set_raster_state(&RasterState { depth: DepthTest::Equal, ..RasterState::SCREEN });
+            self.gl.set_raster_state(&RasterState {
+                depth: DepthTest::Equal,
+                stencil,
+                ..RasterState::SCREEN
+            });
             let far = view.depth.clear_value();
             self.gl.set_depth_window([far, far]);
             light.set(program.bind());
+            more(program);
             program
                 .set("rays", if layout == Layout::Layered { &rays[..] } else { &rays[i..=i] })
                 .set("view_origin", Vec2::from(origin.map(|n| n as f32)))
-                .set("view_texel", 1.0 / Vec2::from(view.size.map(|n| n as f32)));
+                .set("pixel_extent", 1.0 / Vec2::from(view.size.map(|n| n as f32)));
             self.gl.draw_screen();
             self.gl.set_depth_window([0.0, 1.0]);
         }
@@ -178,21 +193,12 @@ impl Renderer {
         }
     }
 
-    /// Draws near objects and transparent surfaces over the bound framebuffer, which holds an eye and its depth from
-    /// pixel [0, 0] on, and has this many samples in each pixel.
-    pub(crate) fn draw_over(&self, scene: &LitScene, view: &View, near: Option<Selection>, samples: u32) {
-        let variant = Variant::plain(samples);
+    /// Draws the transparent surfaces over the bound framebuffer, which holds an eye and its depth from pixel [0, 0] on, and
+    /// has this many samples in each pixel.
+    pub(crate) fn draw_over(&self, scene: &LitScene, view: &View, samples: u32) {
         let views = std::slice::from_ref(view);
         let light = self.illuminate(Layout::Single, scene, views);
-        if let Some(near) = near {
-            let culler = Culler::selecting(view, near);
-            light.declare(self.gl.pass("near objects")).run(|| {
-                self.draw_opaque(variant, &light, views, &Surfaces::Selected(&culler), |_| {});
-            });
-        }
-        if scene.has_transparent() {
-            self.transparent.run(variant, scene, views, &light);
-        }
+        self.transparent.run(Variant::plain(samples), scene, views, &light);
     }
 
     /// Averages the samples, into `to` if it is given, and takes their nearest depth if `depth` is set. With `ink`,
@@ -285,7 +291,7 @@ impl Renderer {
     fn read_samples(&self, targets: &Targets, view: &View, ink: bool, to: &RenderTarget) {
         let Some(samples) = targets.multisample() else { return };
         let Some((color, depth)) = samples.color().zip(samples.depth()) else { return };
-        let variant = Resolve { samples: samples.samples(), ink, depth: true, layer: false };
+        let variant = Resolve { samples: samples.samples(), ink, depth: true, ..Resolve::default() };
         let Some((_, program)) = self.resolve.iter().find(|(made, _)| *made == variant) else { return };
         let mut images = samples.images();
         let mut pass = self.gl.pass("resolve");
@@ -300,14 +306,14 @@ impl Renderer {
                 1,
                 depth,
             );
-            self.draw_resolve(program, targets, view, None);
+            self.draw_resolve(program, targets.layout, view, targets.detail, None);
         });
     }
 
     /// Draws outlines over the resolved picture, or over one of its layers, into another one.
     fn draw_ink(&self, targets: &Targets, view: &View, eye: Eye) {
         let layer = targets.layout == Layout::Layered;
-        let variant = Resolve { samples: 1, ink: true, depth: false, layer };
+        let variant = Resolve { samples: 1, ink: true, layer, ..Resolve::default() };
         let (Some((_, program)), Some(inked)) =
             (self.resolve.iter().find(|(made, _)| *made == variant), &targets.inked)
         else {
@@ -322,7 +328,7 @@ impl Renderer {
                 1,
                 targets.resolved.depth(),
             );
-            self.draw_resolve(program, targets, view, layer.then_some(eye));
+            self.draw_resolve(program, targets.layout, view, targets.detail, layer.then_some(eye));
         });
     }
 
@@ -341,9 +347,15 @@ impl Renderer {
     }
 
     /// Draws `render/resolve.frag` for each eye of an image, or for one layer.
-    fn draw_resolve(&self, program: &Program, targets: &Targets, view: &View, layer: Option<Eye>) {
-        let layout = targets.layout;
-        let outlines = Outlines::of(view, targets.detail);
+    pub(super) fn draw_resolve(
+        &self,
+        program: &Program,
+        layout: Layout,
+        view: &View,
+        detail: f32,
+        layer: Option<Eye>,
+    ) {
+        let outlines = Outlines::of(view, detail);
         let vector = |v: [u32; 2]| IVec2::from(v.map(|n| n as i32));
         program
             .set("view_size", vector(view.size))

@@ -81,7 +81,7 @@ fn an_edge_is_the_mean_of_its_samples() {
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
         let mut rig = Rig::new(head.gl(), scene.clone(), &with_samples(4));
         let view = straight_on(convention);
-        let drawn = rig.draw(&view, Selection::All);
+        let drawn = rig.draw(&view);
         let picture = drawn.color.read_rgba8(0, [0, 0], SIZE);
         let (bright, dark) = (pixel(&picture, 2, 32).to_vec(), pixel(&picture, 93, 32).to_vec());
         let depths = depths(head.gl(), &drawn.depth, &view);
@@ -115,8 +115,7 @@ fn cut_out_edges_cover_samples_by_alpha() {
     fence.model.materials[0].diffuse_map = Some(0);
     let view = straight_on(DepthConvention::Standard);
     let [one, four] = [1, 4].map(|samples| {
-        let picture =
-            Rig::new(head.gl(), fence.clone(), &with_samples(samples)).render(&view, Selection::All);
+        let picture = Rig::new(head.gl(), fence.clone(), &with_samples(samples)).render(&view);
         let dark = pixel(&picture, 93, 32).to_vec();
         let bright = picture.chunks(4).max_by_key(|p| p[0]).unwrap().to_vec();
         let shares: Vec<f32> = picture.chunks(4).map(|p| share(p, &dark, &bright)).collect();
@@ -138,7 +137,7 @@ fn drivers_differ_in_depth_at_edges_alone() {
         let drawn = [&best, &carrying, &least].map(|head| {
             let mut rig = Rig::new(head.gl(), scene(style), &with_samples(4));
             let way = rig.renderer.depth_resolve;
-            let drawn = rig.draw(&view, Selection::All);
+            let drawn = rig.draw(&view);
             let picture = drawn.color.read_rgba8(0, [0, 0], view.size);
             (way, picture, depths(head.gl(), &drawn.depth, &view))
         });
@@ -172,7 +171,7 @@ fn carried_depth_is_that_of_a_sample() {
     for samples in [2, 4].into_iter().filter(|n| head.gl().capabilities().samples.contains(n)) {
         let mut rig = Rig::new(head.gl(), scene.clone(), &with_samples(samples));
         assert_eq!(rig.renderer.depth_resolve, DepthResolve::InColor);
-        let drawn = rig.draw(&view, Selection::All);
+        let drawn = rig.draw(&view);
         assert!(drawn.depth.is_pair);
         for depth in depths(head.gl(), &drawn.depth, &view) {
             let distance = view.depth.distance(depth);
@@ -188,7 +187,7 @@ fn no_sample_is_stored() {
     let recorder = Recorder::new(head.gl());
     let mut rig = Rig::new(head.gl(), scene(ShadingStyle::Realistic), &with_samples(4));
     recorder.start();
-    rig.draw(&view(DepthConvention::Reversed), Selection::All);
+    rig.draw(&view(DepthConvention::Reversed));
     let passes = recorder.take();
     let writes = passes.iter().flat_map(|pass| &pass.declaration.writes);
     let samples: Vec<_> = writes.filter(|write| write.image.samples > 1).collect();
@@ -250,7 +249,7 @@ fn targets_follow_the_renderers_settings() {
         let renderer = Renderer::new(gl, settings, &scene).unwrap();
         let mut own = ViewTargets::default();
         let [expected, drawn] = [&mut own, &mut shared].map(|targets| {
-            let drawn = renderer.render(targets, &scene, &view, Selection::All).unwrap();
+            let drawn = renderer.render(targets, &scene, &view).unwrap();
             drawn.color.read_rgba8(0, [0, 0], view.size)
         });
         assert!(expected == drawn, "{settings:?}");

@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 use super::bloom::{self, BloomPass};
 use super::carry::CarryPass;
-use super::cluster::{Culler, Selection};
+use super::cluster::Culler;
 use super::depth::{DepthImage, DepthResolve};
 use super::geometry::{GeometryPass, Surfaces, Variant};
 use super::layout::Layout;
@@ -49,12 +49,14 @@ pub struct Renderer {
 }
 
 /// A variant of `render/resolve.frag`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Resolve {
     pub samples: u32,
     pub ink: bool,
     pub depth: bool,
     pub layer: bool,
+    /// Draws outlines in the holes of a synthesized eye alone.
+    pub holes: bool,
 }
 
 /// A variant of `render/composite.frag`.
@@ -176,10 +178,9 @@ impl Renderer {
         targets: &'a mut ViewTargets,
         scene: &GpuScene,
         view: &View,
-        selection: Selection,
     ) -> Result<RenderedView<'a>, GlError> {
         let targets = self.fitting(targets, scene)?;
-        self.draw_source(targets, &scene.into(), view, selection)?;
+        self.draw_source(targets, &scene.into(), view)?;
         self.complete(targets, view)
     }
 
@@ -262,7 +263,13 @@ impl Renderer {
         let samples =
             if self.depth_resolve == DepthResolve::Samples && !layer { self.settings.msaa } else { 1 };
         if self.ink || self.depth_resolve == DepthResolve::Samples {
-            self.prepare_resolve(Resolve { samples, ink: self.ink, depth: samples > 1, layer })?;
+            self.prepare_resolve(Resolve {
+                samples,
+                ink: self.ink,
+                depth: samples > 1,
+                layer,
+                ..Resolve::default()
+            })?;
         }
         if self.bloom.is_some() || layer {
             self.prepare_composite(Composite { bloom: self.bloom.is_some(), layer, ..Composite::default() })?;
@@ -270,10 +277,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Compiles the programs that draw over a composited eye, with one sample in each pixel, too, and those that composite
-    /// it with its depth.
+    /// Compiles the programs that draw transparent surfaces over a composited eye, with one sample in each pixel, too, and
+    /// those that composite it with its depth.
     pub(crate) fn prepare_over(&mut self, scene: &GpuScene) -> Result<(), GlError> {
-        self.prepare_variant(scene, Variant::plain(1))?;
+        self.transparent.prepare(scene, Variant::plain(1), &self.shading)?;
         let depth = Some(self.depth_resolve == DepthResolve::InColor);
         let plain = Composite { bloom: self.bloom.is_some(), ..Composite::default() };
         self.prepare_composite(plain)?;
@@ -296,7 +303,7 @@ impl Renderer {
     pub(crate) fn prepare_raw(&mut self) -> Result<(), GlError> {
         if self.depth_resolve == DepthResolve::Samples {
             let samples = self.settings.msaa;
-            self.prepare_resolve(Resolve { samples, ink: false, depth: true, layer: false })?;
+            self.prepare_resolve(Resolve { samples, depth: true, ..Resolve::default() })?;
         }
         Ok(())
     }
@@ -310,7 +317,7 @@ impl Renderer {
         self.prepare_variant(scene, Variant { reprojected: true, ..plain })
     }
 
-    fn prepare_variant(&mut self, scene: &GpuScene, variant: Variant) -> Result<(), GlError> {
+    pub(super) fn prepare_variant(&mut self, scene: &GpuScene, variant: Variant) -> Result<(), GlError> {
         if self.geometry.iter().any(|pass| pass.variant == variant) {
             return Ok(());
         }
@@ -321,10 +328,16 @@ impl Renderer {
         if variant.reprojected && self.depth_resolve == DepthResolve::InColor {
             shading.push(("DEPTH_PAIRS", String::new()));
         }
+        // Outlines come before bloom.
+        let holes = variant.holes && self.bloom.is_some() && !self.ink;
+        shading.extend(holes.then(|| ("BLOOM", String::new())));
         self.geometry.push(GeometryPass::new(gl, scene, variant, &shading)?);
         if !variant.reprojected {
-            self.transparent.prepare(scene, variant, &self.shading)?;
+            if !variant.holes {
+                self.transparent.prepare(scene, variant, &self.shading)?;
+            }
             let mut defines = self.shading.clone();
+            defines.extend(holes.then(|| ("BLOOM", String::new())));
             defines.extend(variant.carried.then(|| ("CARRIED", variant.samples.to_string())));
             defines.extend((variant.layout == Layout::Layered).then(|| ("MULTIVIEW", String::new())));
             self.skies.push((variant, Program::new(gl, ShaderSource::Screen("render/sky.frag"), &defines)?));
@@ -332,10 +345,16 @@ impl Renderer {
         Ok(())
     }
 
-    fn prepare_resolve(&mut self, variant: Resolve) -> Result<(), GlError> {
+    pub(super) fn prepare_resolve(&mut self, variant: Resolve) -> Result<(), GlError> {
         if self.resolve.iter().all(|(made, _)| *made != variant) {
             let mut defines = vec![("SAMPLES", variant.samples.to_string())];
-            let flags = [("INK", variant.ink), ("WRITE_DEPTH", variant.depth), ("LAYER", variant.layer)];
+            let flags = [
+                ("INK", variant.ink),
+                ("WRITE_DEPTH", variant.depth),
+                ("LAYER", variant.layer),
+                ("HOLES", variant.holes),
+                ("BLOOM", variant.holes && self.bloom.is_some()),
+            ];
             defines.extend(flags.into_iter().filter(|(_, on)| *on).map(|(name, _)| (name, String::new())));
             let program = Program::new(&self.gl, ShaderSource::Screen("render/resolve.frag"), &defines)?;
             self.resolve.push((variant, program));
@@ -375,10 +394,9 @@ impl Renderer {
         targets: &mut Targets,
         scene: &LitScene,
         view: &View,
-        selection: Selection,
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
-        let culler = Culler::selecting(view, selection);
+        let culler = Culler::of_view(view);
         self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler));
         self.resolve(targets, view, true, self.ink, None)?;
         self.render_bloom(targets, view, Eye::Left);

@@ -4,13 +4,11 @@ use std::rc::Rc;
 
 use glam::{Mat4, Quat, Vec3};
 
-use super::cluster::{Culler, Selection};
+use super::cluster::Culler;
 use super::scene::{Features, GpuScene};
 use yoro::eyes::Pose;
 use yoro_assets::{Bounds, Viewpoint};
-use yoro_gl::{
-    Blend, Context, DepthTest, Format, GlError, Pass, Program, RasterState, RenderTarget, ShaderSource,
-};
+use yoro_gl::{Context, DepthTest, Format, GlError, Pass, Program, RasterState, RenderTarget, ShaderSource};
 
 /// Distance from the viewpoints, in metres, within which a large scene has shadows.
 const REACH: f32 = 60.0;
@@ -79,7 +77,7 @@ impl ShadowMap {
         scene.declare(gl.pass("shadow"), 1).write(self.target.images()).run(|| {
             self.target.bind();
             gl.clear(Some(1.0));
-            let culler = Culler::new(Vec3::ZERO, &to_clip, Selection::All);
+            let culler = Culler::new(Vec3::ZERO, &to_clip);
             let mut bound = None;
             for (material, moves, clusters) in scene.opaque() {
                 let features = material.features.and(Features::CUTOUT.or(Features::DIFFUSE_MAP));
@@ -91,8 +89,11 @@ impl ShadowMap {
                     &programs.colored
                 };
                 // Rooms are often shells that face inwards; the sun should pass through their roofs.
-                let state =
-                    RasterState { depth: DepthTest::Less, blend: Blend::Off, cull: !material.double_sided };
+                let state = RasterState {
+                    depth: DepthTest::Less,
+                    cull: !material.double_sided,
+                    ..RasterState::SCREEN
+                };
                 gl.set_raster_state(&state);
                 program.bind().set("eye", Vec3::ZERO).set("eye_to_clip", to_clip);
                 scene.set_material(program, material);

@@ -112,12 +112,12 @@ impl Rig {
         Rig { scene, renderer, targets: ViewTargets::default() }
     }
 
-    pub fn draw(&mut self, view: &View, selection: Selection) -> RenderedView<'_> {
-        self.renderer.render(&mut self.targets, &self.scene, view, selection).unwrap()
+    pub fn draw(&mut self, view: &View) -> RenderedView<'_> {
+        self.renderer.render(&mut self.targets, &self.scene, view).unwrap()
     }
 
-    pub fn render(&mut self, view: &View, selection: Selection) -> Vec<u8> {
-        self.draw(view, selection).color.read_rgba8(0, [0, 0], view.size)
+    pub fn render(&mut self, view: &View) -> Vec<u8> {
+        self.draw(view).color.read_rgba8(0, [0, 0], view.size)
     }
 }
 
@@ -144,7 +144,7 @@ fn every_style_renders_its_own_picture() {
     let mut pictures: Vec<Vec<u8>> = Vec::new();
     for style in ShadingStyle::ALL {
         let mut rig = Rig::new(gl, scene(style), &settings());
-        let picture = rig.render(&view(DepthConvention::Standard), Selection::All);
+        let picture = rig.render(&view(DepthConvention::Standard));
         assert_eq!(gl.take_errors(), None, "{style:?}");
         for channel in 0..3 {
             let mean = mean(&picture, channel);
@@ -163,12 +163,12 @@ fn both_depth_conventions_give_one_picture() {
     let head = open();
     {
         let mut rig = Rig::new(head.gl(), scene(ShadingStyle::Realistic), &settings());
-        let standard = rig.render(&view(DepthConvention::Standard), Selection::All);
-        let reversed = rig.render(&view(DepthConvention::Reversed), Selection::All);
+        let standard = rig.render(&view(DepthConvention::Standard));
+        let reversed = rig.render(&view(DepthConvention::Reversed));
         assert!(largest_difference(&standard, &reversed) <= 2);
         let mut infinite = view(DepthConvention::Reversed);
         infinite.depth.far = f32::INFINITY;
-        assert!(largest_difference(&standard, &rig.render(&infinite, Selection::All)) <= 2);
+        assert!(largest_difference(&standard, &rig.render(&infinite)) <= 2);
     }
     assert_eq!(head.gl().take_errors(), None);
 }
@@ -184,7 +184,7 @@ fn depth_is_the_distance_in_the_views_convention() {
     let mut rig = Rig::new(gl, wall, &settings());
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
         let view = View { pose: Pose { position: EYE, ..Pose::IDENTITY }, ..view(convention) };
-        let depths = depths(gl, &rig.draw(&view, Selection::All).depth, &view);
+        let depths = depths(gl, &rig.draw(&view).depth, &view);
         let row = &depths[SIZE[0] as usize * 50..][..SIZE[0] as usize];
         assert!((view.depth.distance(row[40]) - 2.5).abs() < 1e-3, "{convention:?}");
         assert_eq!(row[110], view.depth.clear_value(), "{convention:?}: nothing was drawn there");
@@ -198,42 +198,17 @@ fn targets_follow_the_size_and_nothing_leaks() {
     let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
     let (small, mut large) = (view(DepthConvention::Standard), view(DepthConvention::Standard));
     large.size = [301, 97];
-    let first = rig.render(&small, Selection::All);
+    let first = rig.render(&small);
     let objects = gl.object_count();
     for _ in 0..5 {
-        let picture = rig.draw(&large, Selection::All);
+        let picture = rig.draw(&large);
         assert_eq!((picture.color.size(), picture.depth.texture.size()), (large.size, large.size));
-        assert_eq!(rig.render(&small, Selection::All), first, "a repeated frame is identical");
+        assert_eq!(rig.render(&small), first, "a repeated frame is identical");
     }
     assert_eq!(gl.object_count(), objects);
     assert_eq!(gl.take_errors(), None);
     drop(rig);
     assert_eq!(gl.object_count(), 0, "everything is deleted");
-}
-
-#[test]
-fn nearer_and_farther_composite_to_the_whole() {
-    let head = open();
-    let gl = head.gl();
-    let settings = RenderSettings { msaa: 1, bloom: false, ..settings() };
-    let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings);
-    let view = view(DepthConvention::Standard);
-    let whole = rig.render(&view, Selection::All);
-    let [(near, near_depth), (far, far_depth)] =
-        [Selection::Nearer { from: EYE, distance: 3.0 }, Selection::Farther { from: EYE, distance: 3.0 }]
-            .map(|selection| {
-                let drawn = rig.draw(&view, selection);
-                (drawn.color.read_rgba8(0, [0, 0], SIZE), depths(gl, &drawn.depth, &view))
-            });
-    let drawn = near_depth.iter().filter(|&&d| d < 1.0).count();
-    assert!(drawn > 500 && drawn < near_depth.len() - 500, "{drawn} pixels are near");
-    let composite: Vec<u8> = (0..near_depth.len())
-        .flat_map(|i| {
-            let pixels = if near_depth[i] < far_depth[i] { &near } else { &far };
-            pixels[4 * i..4 * i + 4].to_vec()
-        })
-        .collect();
-    assert!(largest_difference(&whole, &composite) <= 1);
 }
 
 #[test]
@@ -247,7 +222,7 @@ fn transparent_surfaces_are_hidden_by_nearer_ones_only() {
         quad(&mut scene.model, 5, Vec3::new(-8.0, -0.5, 5.0), Vec3::X * 16.0, Vec3::NEG_Z * 30.0);
         let mut rig = Rig::new(gl, scene, &RenderSettings { bloom: false, msaa: 1, ..settings() });
         let view = view(convention);
-        let before = rig.render(&view, Selection::All);
+        let before = rig.render(&view);
         let drawn = rig.renderer.render_all(&mut rig.targets, &rig.scene, &view).unwrap();
         let after = drawn.color.read_rgba8(0, [0, 0], view.size);
         let changed: Vec<usize> =
@@ -273,7 +248,7 @@ fn textures_are_upright_and_middle_grey_stays_grey() {
     quad(&mut scene.model, 0, Vec3::new(-5.0, -5.0, -2.0), Vec3::X * 10.0, Vec3::Y * 10.0);
     let mut rig = Rig::new(head.gl(), scene, &settings());
     let view = View { pose: Pose::IDENTITY, ..view(DepthConvention::Standard) };
-    let picture = rig.render(&view, Selection::All);
+    let picture = rig.render(&view);
     let pixel = |x: u32, y: u32| &picture[((y * SIZE[0] + x) * 4) as usize..][..4];
     let (top, bottom) = (pixel(70, 100), pixel(70, 12));
     assert!(top[0] > 150 && top[1] < 70, "the picture's upper half is red: {top:?}");
@@ -289,7 +264,7 @@ fn a_renderer_refuses_another_scene() {
     let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
     let other = GpuScene::upload(gl, scene(ShadingStyle::Anime)).unwrap();
     let view = view(DepthConvention::Standard);
-    assert!(rig.renderer.render(&mut rig.targets, &other, &view, Selection::All).is_err());
+    assert!(rig.renderer.render(&mut rig.targets, &other, &view).is_err());
 }
 
 #[test]

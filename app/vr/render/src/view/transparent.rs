@@ -98,7 +98,12 @@ impl TransparentPass {
                     current = batch;
                     let depth = depth_test(view.depth.convention);
                     let cull = !material.double_sided;
-                    self.gl.set_raster_state(&RasterState { depth, blend: Blend::Over, cull });
+                    self.gl.set_raster_state(&RasterState {
+                        depth,
+                        blend: Blend::Over,
+                        cull,
+                        ..RasterState::SCREEN
+                    });
                     self.gl.mask_depth();
                     eyes.set(program.bind());
                     light.set(program);

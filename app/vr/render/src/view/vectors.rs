@@ -10,8 +10,7 @@ use super::scene::{Features, GpuScene};
 use super::uniforms::{depth_test, eye_to_clip};
 use yoro::eyes::{Ndc, View};
 use yoro_gl::{
-    Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
-    Texture,
+    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
 
 /// Writes motion vectors and depth of a view, whose size need not be that of the rendered image: normalized device
@@ -49,7 +48,7 @@ pub(crate) struct Step {
 }
 
 impl VectorPass {
-    /// Makes the pass for views with one depth a pixel, or with a pair ([`DepthImage::is_pair`]).
+    /// Makes the pass for views with one depth a pixel, and perhaps for those with a pair ([`DepthImage::is_pair`]).
     pub fn new(gl: &Rc<Context>, is_pair: bool) -> Result<VectorPass, GlError> {
         let program = |features: Features| {
             let source =
@@ -58,6 +57,7 @@ impl VectorPass {
         };
         let mut vectors = DepthProgram::new(gl, "render/vectors.frag");
         vectors.prepare(is_pair)?;
+        vectors.prepare(false)?;
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         Ok(VectorPass {
             gl: gl.clone(),
@@ -93,7 +93,8 @@ impl VectorPass {
                     true => &self.moving[1 + usize::from(features.contains(Features::DIFFUSE_MAP))],
                 };
                 let depth = depth_test(view.depth.convention);
-                gl.set_raster_state(&RasterState { depth, blend: Blend::Off, cull: !material.double_sided });
+                let cull = !material.double_sided;
+                gl.set_raster_state(&RasterState { depth, cull, ..RasterState::SCREEN });
                 program
                     .bind()
                     .set("eye", view.pose.position)

@@ -1,5 +1,7 @@
 //! Motion vectors of views, against positions in f64.
 
+use std::rc::Rc;
+
 use glam::{DMat4, DQuat, DVec3, DVec4, Quat, Vec3};
 
 use super::moving_tests::{CUBE_VELOCITY, FENCE_TURN, moving};
@@ -7,7 +9,9 @@ use super::tests::{Rig, open, settings, view};
 use super::vectors::{Step, VectorPass};
 use super::*;
 use yoro::eyes::{DepthConvention, Eye, Frustum, Ndc, Pose, View};
-use yoro_gl::{Destination, Filter, Format, RenderTarget};
+use yoro_assets::motion::{Interpolation, Node, Track};
+use yoro_assets::{Motion, Scene};
+use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
 
 fn to_clip(view: &View) -> DMat4 {
     view.wgpu_projection().as_dmat4() * view.pose.view_matrix().as_dmat4()
@@ -64,18 +68,70 @@ fn vectors_are_those_of_what_has_moved() {
     }
 }
 
-/// After a jump, and where a loop starts over, surfaces have the vectors of what stands still.
+/// After a long step, surfaces have the vectors of what stands still, and so has what jumps in a short one: here all, or
+/// only the cube, which leaps, appears, is too fast, or starts over, while the fence goes on.
 #[test]
 fn a_jump_is_no_motion() {
     let head = open();
     let gl = head.gl();
-    let mut rig = Rig::new(gl, moving(), &settings());
+    let fastest = |scene: Scene, times: &[f64]| fastest_vectors(gl, scene, times);
+    let times = [1.0, 1.1, 1.1, 2.4, 2.55];
+    let [jump, step, again, late, after] = fastest(moving(), &times)[..] else { panic!("{times:?}") };
+    assert!(step > 0.01, "{step}");
+    // The clock starts over after 2.5 seconds, where everything leaps back.
+    assert!([jump, again, late, after].iter().all(|v| *v < 1e-5), "{:?}", [jump, again, late, after]);
+
+    let with_cube = |change: &dyn Fn(&mut Motion)| {
+        let mut scene = moving();
+        scene.motion.nodes[0] = Node::default();
+        change(&mut scene.motion);
+        scene
+    };
+    let still = fastest(with_cube(&|_| ()), &[1.0, 1.1])[1];
+    assert!(still > 1e-3, "the fence: {still}");
+    let track = |times: [f32; 2], values: [f32; 6]| Track {
+        times: times.into(),
+        values: values.into(),
+        ..Track::default()
+    };
+    let leap = [0.0, 0.0, 0.0, -0.2, 0.3, 0.6];
+    let step = Interpolation::Step;
+    let jumps: [(&str, &dyn Fn(&mut Motion)); 4] = [
+        ("leaps", &|motion| {
+            motion.nodes[0].moves = Some(Track { interpolation: step, ..track([0.0, 1.05], leap) })
+        }),
+        ("appears", &|motion| {
+            let grows = track([0.0, 1.05], [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+            motion.nodes[0].grows = Some(Track { interpolation: step, ..grows });
+        }),
+        ("is too fast", &|motion| {
+            motion.nodes[0].moves = Some(track([1.04, 1.05], [0.0, 0.0, 0.0, -1.0, 0.5, 0.0]))
+        }),
+        ("starts over", &|motion| {
+            motion.loops.push(0.35);
+            motion.nodes[0].moves = Some(Track { clock: 1, ..track([0.0, 0.35], leap) });
+        }),
+    ];
+    for (what, change) in jumps {
+        let [_, got] = fastest(with_cube(change), &[1.0, 1.1])[..] else { panic!("{what}") };
+        // The cube may hide a part of the fence.
+        assert!((0.5 * still..still + 1e-4).contains(&got), "{what}: {got}, and the fence alone {still}");
+    }
+    let moves =
+        |motion: &mut Motion| motion.nodes[0].moves = Some(track([1.0, 1.2], [0.0, 0.0, 0.0, 0.8, 0.1, 0.0]));
+    let slow = fastest(with_cube(&moves), &[1.0, 1.1])[1];
+    assert!(slow > 1.5 * still, "the cube moves by {slow}, the fence by {still}");
+}
+
+/// Returns the largest vector of a scene after each step to one of these times.
+fn fastest_vectors(gl: &Rc<Context>, scene: Scene, times: &[f64]) -> Vec<f32> {
+    let mut rig = Rig::new(gl, scene, &settings());
     let view = view(DepthConvention::Reversed);
     let mut targets = rig.renderer.targets(Layout::Single).unwrap();
     let formats = [(Format::Rgba32F, Filter::Nearest)];
     let target = RenderTarget::new(gl, view.size, &formats, Some(Format::Depth32F)).unwrap();
     let mut pass = VectorPass::new(gl, false).unwrap();
-    let mut fastest = |seconds| {
+    let fastest = |&seconds: &f64| {
         rig.renderer.set_time(&mut rig.scene, seconds).unwrap();
         rig.renderer
             .draw_all(&mut targets, &(&rig.scene).into(), std::slice::from_ref(&view), true, None)
@@ -88,11 +144,7 @@ fn a_jump_is_no_motion() {
         let vectors = target.read_rgba32f(0, [0, 0], view.size);
         vectors.iter().map(|v| v[0].abs().max(v[1].abs())).fold(0.0, f32::max)
     };
-    let [jump, step, again, late] = [1.0, 1.1, 1.1, 2.4].map(&mut fastest);
-    // The clock starts over after 2.5 seconds, where everything leaps back.
-    let after = fastest(2.55);
-    assert!(step > 0.01, "{step}");
-    assert!([jump, again, late, after].iter().all(|v| *v < 1e-5), "{:?}", [jump, again, late, after]);
+    times.iter().map(fastest).collect()
 }
 
 fn check(

@@ -345,8 +345,13 @@ impl Cardboard {
             None => {
                 let views = self.viewer.stereo_views(&pair, pair.axes());
                 self.viewer.render(&views, FrameTargets::Images(&mut attached.images))?;
-                for (frame, layer) in attached.images.layers() {
-                    self.viewer.draw_panels(&pair, layer, frame)?;
+                if views.inset.is_none() {
+                    self.viewer.draw_panels(&pair, attached.images.wide())?;
+                } else {
+                    // The HUD is drawn once the levels are composed.
+                    for (frame, layer) in attached.images.layers() {
+                        self.viewer.draw_menu(layer, &frame.colors());
+                    }
                 }
             }
         }
@@ -400,12 +405,16 @@ impl Cardboard {
                     }
                     None => (timewarp.frame(), pair),
                 };
-                self.viewer.draw_panels(shown, shown, frame)?;
+                self.viewer.draw_panels(shown, frame)?;
                 lens.run(frame.images(), turn, window);
             }
             None => match images.eye(Eye::Left).zip(images.eye(Eye::Right)) {
                 Some((left, right)) if left.0.inset.is_some() => {
-                    lens.run_levels(&[left, right], turn, window);
+                    let pair = attached.rendered.map(|(_, pair)| pair);
+                    // As on headsets, the menu takes the HUD's place.
+                    let is_menu_open = self.viewer.is_menu_open();
+                    let panel = self.viewer.hud()?.filter(|_| !is_menu_open);
+                    lens.run_levels(&[left, right], panel.as_ref().zip(pair.as_ref()), turn, window);
                 }
                 _ => lens.run(images.wide().images(), turn, window),
             },

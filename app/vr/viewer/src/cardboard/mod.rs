@@ -2,6 +2,8 @@
 
 mod display;
 mod fence;
+#[cfg(test)]
+mod pair_tests;
 mod timewarp;
 
 pub(crate) use display::FULL_RATE;

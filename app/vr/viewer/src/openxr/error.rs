@@ -21,38 +21,15 @@ pub enum XrError {
         /// The result that it returned.
         result: sys::Result,
     },
-    /// An extension is missing.
-    #[error(
-        "the OpenXR runtime has no {extension}, without which it cannot take images of OpenGL ES: use another runtime"
-    )]
-    Extension {
-        /// The extension's name.
-        extension: &'static str,
-    },
-    /// The runtime needs another version of OpenGL ES.
-    #[error(
-        "the OpenXR runtime needs OpenGL ES {needed} and this driver has {present}: update the driver or the runtime"
-    )]
-    Version {
-        /// The version that the runtime needs.
-        needed: String,
-        /// The context's version.
-        present: String,
-    },
+    /// The runtime lacks an extension or needs another version of OpenGL ES, or several sessions in a row have failed.
+    #[error("{0}")]
+    Unusable(String),
     /// The runtime violates the specification.
     #[error("the OpenXR runtime {0}: that is a mistake in the runtime, so update it")]
     InvalidRuntimeData(String),
     /// The runtime has ended the session.
     #[error("the OpenXR runtime has ended the session by itself: a new one is begun")]
     Lost,
-    /// Several sessions in a row have failed.
-    #[error("{sessions} OpenXR sessions in a row have failed; the last one: {last}")]
-    GivenUp {
-        /// Number of sessions.
-        sessions: u32,
-        /// The failure of the last one.
-        last: Box<XrError>,
-    },
     /// The GL context cannot be used.
     #[error("the OpenGL ES context cannot be used with OpenXR: {0}")]
     Context(String),
@@ -73,6 +50,13 @@ impl XrError {
                 }
         )
     }
+}
+
+/// Returns the error of a runtime without an extension.
+pub(super) fn without(extension: &str) -> XrError {
+    XrError::Unusable(format!(
+        "the OpenXR runtime has no {extension}, without which it cannot take images of OpenGL ES: use another runtime"
+    ))
 }
 
 /// Returns the remedy for a result.

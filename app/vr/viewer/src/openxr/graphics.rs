@@ -96,10 +96,13 @@ pub(super) fn check_version(
         call("xrGetOpenGLESGraphicsRequirementsKHR", instance.graphics_requirements::<xr::OpenGlEs>(system))?;
     let least = needed.min_api_version_supported;
     if (u32::from(least.major()), u32::from(least.minor())) > present {
-        return Err(XrError::Version {
-            needed: format!("{}.{}", least.major(), least.minor()),
-            present: format!("{}.{}", present.0, present.1),
-        });
+        return Err(XrError::Unusable(format!(
+            "the OpenXR runtime needs OpenGL ES {}.{} and this driver has {}.{}: update the driver or the runtime",
+            least.major(),
+            least.minor(),
+            present.0,
+            present.1
+        )));
     }
     Ok(())
 }

@@ -181,7 +181,9 @@ impl Headset {
         }
         self.failures += 1;
         if self.failures > MAX_FAILURES {
-            return Err(XrError::GivenUp { sessions: self.failures, last: Box::new(error) });
+            let count = self.failures;
+            let what = format!("{count} OpenXR sessions in a row have failed; the last one: {error}");
+            return Err(XrError::Unusable(what));
         }
         let pause = PAUSE * 2u32.pow(self.failures - 1);
         log::warn!("{error} (after a pause of {:.1} s)", pause.as_secs_f32());

@@ -102,21 +102,16 @@ impl Viewer {
         Ok(Some(attached.hud.set(Content { text, progress }, placement)))
     }
 
-    /// Draws the HUD and the menu over both eyes of a frame, or over a layer of them.
+    /// Draws the HUD and the menu over both eyes of a frame.
     ///
     /// # Errors
     /// [`ViewerError::NoContext`].
-    pub(crate) fn draw_panels(
-        &mut self,
-        shown: &EyePair,
-        layer: &EyePair,
-        frame: &StereoFrame,
-    ) -> Result<(), ViewerError> {
+    pub(crate) fn draw_panels(&mut self, pair: &EyePair, frame: &StereoFrame) -> Result<(), ViewerError> {
         let colors = frame.colors();
         if let Some(panel) = self.hud()? {
-            panel.draw_into_eyes(shown, layer, &colors);
+            panel.draw_into_eyes(pair, &colors);
         }
-        self.draw_menu(layer, &colors);
+        self.draw_menu(pair, &colors);
         Ok(())
     }
 

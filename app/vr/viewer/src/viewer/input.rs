@@ -112,7 +112,9 @@ impl Viewer {
     }
 
     pub(super) fn change_ipd(&mut self, change: f32) -> Action {
-        let ipd = Ipd::nearest(self.ipd().metres() + change);
+        // Whole tenths of a millimetre, so that steps do not add up rounding errors.
+        let metres = self.ipd().metres() + change;
+        let ipd = Ipd::nearest((metres * 1e4).round() / 1e4);
         self.ipd.chosen = Some(ipd);
         Action::Ipd(ipd)
     }

@@ -79,9 +79,6 @@ impl Bench {
     }
 
     /// Renders `count` stereo frames, and waits until the GPU has finished the last one.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn frames(
         &mut self,
         page: &mut Page,
@@ -104,9 +101,6 @@ impl Bench {
     }
 
     /// Renders one stereo frame with a timer query around each pass; the results arrive in later calls.
-    ///
-    /// # Errors
-    /// A sentence.
     #[wasm_bindgen(js_name = timedFrame)]
     pub fn timed_frame(
         &mut self,

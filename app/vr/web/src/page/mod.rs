@@ -1,4 +1,4 @@
-//! The interface for JavaScript: the canvas and its content.
+//! The interface for JavaScript: the canvas and its content. Errors are sentences for the page's message.
 
 mod bench;
 mod error;
@@ -104,14 +104,15 @@ impl Page {
     }
 
     /// Returns the defaults of the choices that all programs have, and the largest distance between the eyes, as JSON:
-    /// `{"method", "msaa", "dominant", "ipd", "maxIpd"}`. Distances are in millimetres.
+    /// `{"method", "msaa", "holes", "dominant", "ipd", "maxIpd"}`. Distances are in millimetres.
     #[wasm_bindgen(js_name = defaultChoices)]
     pub fn default_choices() -> String {
-        let Settings { method, msaa, dominant, ipd, .. } = Settings::default();
+        let Settings { method, msaa, holes, dominant, ipd, .. } = Settings::default();
         let millimetres = |ipd: Ipd| (ipd.metres() * 1e3).round();
         serde_json::json!({
             "method": method,
             "msaa": msaa,
+            "holes": holes,
             "dominant": dominant,
             "ipd": millimetres(ipd),
             "maxIpd": millimetres(Ipd::MAX),
@@ -220,9 +221,6 @@ impl Page {
     }
 
     /// Moves everything in the scene to its place at a time in seconds; does nothing in a static scene.
-    ///
-    /// # Errors
-    /// A sentence.
     #[wasm_bindgen(js_name = setTime)]
     pub fn set_time(&mut self, seconds: f64) -> Result<(), JsError> {
         self.scene().map_or(Ok(()), |scene| scene.prepared.set_time(seconds)).map_err(sentence)
@@ -279,9 +277,6 @@ impl Page {
     }
 
     /// Renders for a canvas of this size, and shows the result there as [`Page::show`] does.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn draw(&mut self, width: u32, height: u32, divider: f32) -> Result<(), JsError> {
         if let Content::Scene(scene) = &mut self.content {
             let size = self.settings.display.part([width, height]);
@@ -334,9 +329,6 @@ impl Page {
     }
 
     /// Draws as [`Page::draw`] does, but faster: without the real images that a display compares with.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn preview(&mut self, width: u32, height: u32) -> Result<(), JsError> {
         let display = self.settings.display;
         if display.needs_truth() {
@@ -373,9 +365,6 @@ impl Page {
 
     /// Renders the picture of the last [`Page::draw`] `count` more times, by two renders or by the method, and waits
     /// for the GPU, for timing. Does nothing unless the display needs both.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn repeat(&mut self, real: bool, count: u32) -> Result<(), JsError> {
         self.scene().map_or(Ok(()), |scene| scene.repeat(real, count)).map_err(sentence)
     }

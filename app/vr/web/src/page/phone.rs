@@ -45,9 +45,6 @@ impl Phone {
 
     /// Combines a screen of this size in metres with a viewer: `v1`, `v2`, or the URI of a viewer's QR code. The
     /// direction that was straight ahead for the phone `before` is kept.
-    ///
-    /// # Errors
-    /// A sentence.
     #[wasm_bindgen(constructor)]
     pub fn new(
         page: &Page,
@@ -81,9 +78,6 @@ impl Phone {
 
     /// Draws both eyes of the head through the lenses, on a canvas of this size. `scale` is a factor on the full
     /// resolution.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn draw(&mut self, page: &mut Page, width: u32, height: u32, scale: f32) -> Result<(), JsError> {
         let head = self.head.orientation();
         let full = self.optics.full_size([width, height]);

@@ -26,9 +26,6 @@ pub struct PictureShow {
 
 impl PictureShow {
     /// Uploads the pictures and synthesizes the eyes.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn new(
         gl: &Rc<Context>,
         show: &Show,
@@ -65,9 +62,6 @@ impl PictureShow {
     }
 
     /// Synthesizes the eyes, `ipd` metres apart.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn synthesize(&mut self, show: &Show, ipd: f32) -> Result<(), JsError> {
         let nearness = self.pair.nearness(&self.options, ipd).map_err(sentence)?;
         let bytes: Vec<u8> = nearness.values.iter().flat_map(|v| v.to_ne_bytes()).collect();

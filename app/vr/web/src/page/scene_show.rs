@@ -35,9 +35,6 @@ struct Truth {
 
 impl SceneShow {
     /// Compiles renderer and method for a scene.
-    ///
-    /// # Errors
-    /// The GPU does not support it.
     pub fn new(gl: &Rc<Context>, settings: &Settings, scene: Scene) -> Result<SceneShow, GlError> {
         Ok(SceneShow {
             prepared: PreparedScene::new(gl, scene, &settings.render_settings())?,
@@ -75,9 +72,6 @@ impl SceneShow {
     }
 
     /// Renders both eyes of a head, with images of `size` pixels, and the real render if the display needs it.
-    ///
-    /// # Errors
-    /// Those of the session.
     pub fn render(
         &mut self,
         gl: &Rc<Context>,
@@ -107,9 +101,6 @@ impl SceneShow {
     }
 
     /// Renders both eyes of a phone's viewer or a headset.
-    ///
-    /// # Errors
-    /// Those of the session.
     pub fn render_to(
         &mut self,
         views: &StereoViews,
@@ -121,9 +112,6 @@ impl SceneShow {
 
     /// Renders the last frame `count` more times, by the method or by two real renders, and waits for the GPU. Does
     /// nothing without a real render to compare with.
-    ///
-    /// # Errors
-    /// Those of the session.
     pub fn repeat(&mut self, real: bool, count: u32) -> Result<(), StereoError> {
         let (Some(truth), Some(views)) = (&mut self.truth, &self.views) else { return Ok(()) };
         let (session, frame) = match real {

@@ -33,9 +33,6 @@ impl Headset {
     }
 
     /// Creates a session's images.
-    ///
-    /// # Errors
-    /// A sentence.
     #[wasm_bindgen(constructor)]
     pub fn new(page: &Page) -> Result<Headset, JsError> {
         let eye = || {
@@ -52,9 +49,6 @@ impl Headset {
     /// Renders both eyes into images of this size. `views` has 23 floats per eye, the left one first: position,
     /// orientation (x, y, z, w) and projection matrix. `text`, of at most four lines, is shown in front of the eyes.
     /// Returns false if both eyes were rendered because neither can be synthesized from the other.
-    ///
-    /// # Errors
-    /// A sentence.
     pub fn draw(
         &mut self,
         page: &mut Page,
@@ -91,7 +85,7 @@ impl Headset {
         }
         if !text.is_empty() {
             let panel = hud.set(HudContent { text, progress: None }, Placement::Below);
-            panel.draw_into_eyes(&pair, &pair, &[0, 1].map(|i| images[i].color_only()));
+            panel.draw_into_eyes(&pair, &[0, 1].map(|i| images[i].color_only()));
         }
         Ok(fits)
     }

@@ -12,13 +12,33 @@ use super::{Chain, Client, Frame, Outcome, Submitted, check};
 impl Client<'_> {
     /// Returns the near and far planes that the runtime recommends in structures chained to the configuration's views.
     pub fn chained_depth_ranges(&self, count: usize) -> Outcome<Vec<[f32; 2]>> {
+        self.chained_to_sizes(count, depth_range(), planes)
+    }
+
+    /// Returns the left and right angles that are recommended in structures chained to the configuration's views.
+    pub fn chained_fields_of_view(&self, count: usize) -> Outcome<Vec<[f32; 2]>> {
+        let ty = sys::ViewConfigurationViewFovEPIC::TYPE;
+        // SAFETY: plain data.
+        let empty = sys::ViewConfigurationViewFovEPIC { ty, ..unsafe { std::mem::zeroed() } };
+        self.chained_to_sizes(count, empty, |fov| {
+            [fov.recommended_fov.angle_left, fov.recommended_fov.angle_right]
+        })
+    }
+
+    /// Returns what the runtime writes to structures chained to the configuration's views.
+    fn chained_to_sizes<T: Clone>(
+        &self,
+        count: usize,
+        empty: T,
+        read: fn(&T) -> [f32; 2],
+    ) -> Outcome<Vec<[f32; 2]>> {
         let view = |next| sys::ViewConfigurationView {
             ty: sys::ViewConfigurationView::TYPE,
             next,
             // SAFETY: plain data.
             ..unsafe { std::mem::zeroed() }
         };
-        chained(count, view, |views| {
+        chained(count, empty, read, view, |views| {
             let (mut number, room) = (0, count as u32);
             let call = self.xr.enumerate_view_configuration_views;
             let place = views.as_mut_ptr();
@@ -32,7 +52,7 @@ impl Client<'_> {
     pub fn chained_to_located(&self, frame: Frame, count: usize) -> Outcome<Vec<[f32; 2]>> {
         // SAFETY: plain data.
         let view = |next| sys::View { ty: sys::View::TYPE, next, ..unsafe { std::mem::zeroed() } };
-        chained(count, view, |views| self.locate_views(frame, views).map(drop))
+        chained(count, depth_range(), planes, view, |views| self.locate_views(frame, views).map(drop))
     }
 
     /// Returns the reprojection modes of a view configuration.
@@ -89,7 +109,7 @@ impl Client<'_> {
     }
 
     /// Returns a function of an enabled extension.
-    fn function(&self, name: &CStr) -> pfn::VoidFunction {
+    pub(super) fn function(&self, name: &CStr) -> pfn::VoidFunction {
         let mut function = None;
         // SAFETY: a live instance, and a null-terminated name.
         let result = unsafe { (self.get)(self.instance, name.as_ptr(), &mut function) };
@@ -116,19 +136,35 @@ impl Client<'_> {
         let info = self.chain_info(format, size, 1);
         self.chain_of(&sys::SwapchainCreateInfo { next: (&raw const more).cast(), ..info })
     }
+
+    /// Creates a swapchain whose image never changes.
+    pub fn static_chain(&self, format: vk::Format, size: [u32; 2]) -> Outcome<Chain> {
+        let create_flags = sys::SwapchainCreateFlags::STATIC_IMAGE;
+        self.chain_of(&sys::SwapchainCreateInfo { create_flags, ..self.chain_info(format, size, 1) })
+    }
 }
 
-/// Makes views that each have a structure chained to them, and returns the near and far planes that `ask` finds there.
-fn chained<V>(
+fn depth_range() -> sys::ViewConfigurationDepthRangeEXT {
+    // SAFETY: plain data.
+    let empty = unsafe { std::mem::zeroed() };
+    sys::ViewConfigurationDepthRangeEXT { ty: sys::ViewConfigurationDepthRangeEXT::TYPE, ..empty }
+}
+
+fn planes(range: &sys::ViewConfigurationDepthRangeEXT) -> [f32; 2] {
+    [range.recommended_near_z, range.recommended_far_z]
+}
+
+/// Makes views that each have a structure chained to them, and returns the numbers that `ask` finds there.
+fn chained<V, T: Clone>(
     count: usize,
+    empty: T,
+    read: fn(&T) -> [f32; 2],
     view: impl Fn(*mut c_void) -> V,
     ask: impl FnOnce(&mut [V]) -> Outcome<()>,
 ) -> Outcome<Vec<[f32; 2]>> {
-    let ty = sys::ViewConfigurationDepthRangeEXT::TYPE;
-    // SAFETY: plain data.
-    let range = sys::ViewConfigurationDepthRangeEXT { ty, ..unsafe { std::mem::zeroed() } };
-    let mut ranges = vec![range; count];
-    let mut views: Vec<V> = ranges.iter_mut().map(|range| view(ptr::from_mut(range).cast())).collect();
+    let mut structures = vec![empty; count];
+    let mut views: Vec<V> =
+        structures.iter_mut().map(|structure| view(ptr::from_mut(structure).cast())).collect();
     ask(&mut views)?;
-    Ok(ranges.iter().map(|range| [range.recommended_near_z, range.recommended_far_z]).collect())
+    Ok(structures.iter().map(read).collect())
 }

@@ -14,39 +14,9 @@ pub enum RecordError {
     /// The file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The first line is not a header.
-    #[error(
-        "{} is not a result of yoro bench (its first line is not a header): name another file",
-        path.display()
-    )]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The file was written by another version.
-    #[error(
-        "{} has version {version} of the result format and this yoro reads version {VERSION}: use the yoro that wrote it, or measure again into another file",
-        path.display()
-    )]
-    Version {
-        /// The file.
-        path: PathBuf,
-        /// The version that the file names.
-        version: u64,
-    },
-    /// A line that is not the last one cannot be read.
-    #[error(
-        "{}, line {line} is damaged ({what}): restore the file from a copy, or measure again into another file",
-        path.display()
-    )]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// The number of the line, counted from 1.
-        line: usize,
-        /// The reason why it cannot be read.
-        what: String,
-    },
+    /// The file is not a result, is from another version, or is damaged before its last line. Holds the sentence.
+    #[error("{0}")]
+    Unusable(String),
     /// The file belongs to a run with other parameters.
     #[error(
         "{} holds results with {name} = {there}, and this run has {here}: give the same options to go on with it, or name another file",
@@ -107,13 +77,10 @@ impl Results {
                     }
                 }
                 Err(_) if offset == bytes.len() => cut_off = true,
-                Err(error) => {
-                    let (path, what) = (path.into(), error.to_string());
-                    return Err(RecordError::Damaged { path, line: index + 1, what });
-                }
+                Err(error) => return Err(damaged(path, index + 1, &error)),
             }
         }
-        let header = header.ok_or_else(|| RecordError::Foreign { path: path.into() })?;
+        let header = header.ok_or_else(|| foreign(path))?;
         if cut_off || records.len() > finished_records {
             log::warn!("{}: the last round is cut off and is left out", path.display());
         }
@@ -161,17 +128,34 @@ impl Results {
 
 /// Reads the header, with a different error for each way in which the first line can be wrong.
 fn read_header(path: &Path, line: &[u8]) -> Result<Header, RecordError> {
-    let foreign = || RecordError::Foreign { path: path.into() };
-    let value: serde_json::Value = serde_json::from_slice(line).map_err(|_| foreign())?;
-    let version = value["yoro_bench"].as_u64().ok_or_else(foreign)?;
+    let value: serde_json::Value = serde_json::from_slice(line).map_err(|_| foreign(path))?;
+    let version = value["yoro_bench"].as_u64().ok_or_else(|| foreign(path))?;
     if version != u64::from(VERSION) {
-        return Err(RecordError::Version { path: path.into(), version });
+        return Err(RecordError::Unusable(format!(
+            "{} has version {version} of the result format and this yoro reads version {VERSION}: use the yoro that wrote it, or measure again into another file",
+            path.display()
+        )));
     }
     match serde_json::from_value(value) {
         Ok(Record::Header(header)) => Ok(header),
-        Ok(_) => Err(foreign()),
-        Err(error) => Err(RecordError::Damaged { path: path.into(), line: 1, what: error.to_string() }),
+        Ok(_) => Err(foreign(path)),
+        Err(error) => Err(damaged(path, 1, &error)),
     }
+}
+
+fn foreign(path: &Path) -> RecordError {
+    let path = path.display();
+    RecordError::Unusable(format!(
+        "{path} is not a result of yoro bench (its first line is not a header): name another file"
+    ))
+}
+
+/// Returns the error of a line, counted from 1.
+fn damaged(path: &Path, line: usize, error: &serde_json::Error) -> RecordError {
+    RecordError::Unusable(format!(
+        "{}, line {line} is damaged ({error}): restore the file from a copy, or measure again into another file",
+        path.display()
+    ))
 }
 
 /// Appends to a file of results, a whole round at a time.

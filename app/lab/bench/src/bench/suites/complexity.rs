@@ -1,15 +1,11 @@
 //! Frame time by number of triangles
 
-use super::super::Experiment;
 use super::super::contender::Contender;
-use super::super::frames::{self, FrameMeasures};
-use super::super::job::{Choices, Job, Source};
+use super::super::job::Source;
 use super::super::record::metric;
 use super::super::results::{CONVENTIONAL, SuiteData};
-use super::super::runner::Runner;
-use super::super::scenes::LazyObject;
 use super::super::tables::{Sweep, cell, milliseconds, papers_entry, push_refusals};
-use yoro_render::PreparedScene;
+use super::{COST, FrameSuite};
 use yoro_report::paper::PAPER;
 use yoro_report::stats::{geometric_mean, line_through, mean};
 use yoro_report::text::{fixed, short_count};
@@ -18,37 +14,22 @@ use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
 /// The number of sizes, as in the paper, and in the short form.
 const SIZES: [usize; 2] = [9, 5];
 
-/// Frame time by number of triangles.
-pub struct Complexity;
-
-impl Experiment for Complexity {
-    fn name(&self) -> &'static str {
-        "complexity"
-    }
-
-    fn about(&self) -> &'static str {
-        "Frame time of every method as the number of triangles grows"
-    }
-
-    fn jobs(&'static self, choices: &Choices, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
+pub(super) const COMPLEXITY: FrameSuite = FrameSuite {
+    name: "complexity",
+    about: "Frame time of every method as the number of triangles grows",
+    measures: COST,
+    contenders: Contender::methods,
+    jobs: |suite, choices, object| {
         // Sizes grow in even steps, the first of which is one step. Slopes are measurable only if all else is equal.
         let sizes = choices.long_or_quick(SIZES[0], SIZES[1]);
         let step = (choices.max_triangles / sizes / object.triangles()).max(1);
-        let contenders = choices.contenders(self.name(), Contender::methods(), &[Contender::CONVENTIONAL])?;
-        Ok(choices.sweep(self, vec!["swarm".into()], (1..=sizes).map(|i| i * step), |job, copies| {
-            job.contenders.clone_from(&contenders);
-            job.rounds = choices.rounds;
+        choices.sweep(suite, vec!["swarm".into()], (1..=sizes).map(|i| i * step), |job, copies| {
             job.source = Source::Swarm { copies, places: step * sizes };
             job.conditions.point = Some(object.swarm_triangles(copies) as f64);
             job.frames = 1;
-        }))
-    }
-
-    fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
-        frames::measure(runner, job, scene, FrameMeasures { cost: true, quality: false, pictures: false })
-    }
-
-    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        })
+    },
+    sections: |suite| {
         let mut section = Section::new(
             "Complexity",
             "Frame time against the number of triangles of one scene. The slope is the cost of another million triangles, \
@@ -82,8 +63,8 @@ impl Experiment for Complexity {
         let sweep = Sweep { axis: Axis::new("triangles"), text: |point| short_count(point as u64) };
         section.table(sweep.table(suite, "Median frame time, ms", metric::FRAME_MS));
         vec![section]
-    }
-}
+    },
+};
 
 /// Milliseconds or ratios by millions of triangles.
 type Curve = Vec<(f64, f64)>;

@@ -35,11 +35,19 @@ impl Experiment for Flicker {
     }
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {
-        let contenders = choices.contenders(self.name(), Contender::synthesis(), &Contender::BASELINES)?;
+        let contenders = choices.contenders(
+            self.name(),
+            [Contender::synthesis(), vec![Contender::RenderedHoles]].concat(),
+            &Contender::BASELINES,
+        )?;
         Ok(choices.sweep(self, choices.varied_scenes(), [()], |job, ()| {
             job.contenders.clone_from(&contenders);
             job.frames = choices.long_or_quick(FRAMES[0], FRAMES[1]);
         }))
+    }
+
+    fn moves(&self, _job: &Job) -> bool {
+        true
     }
 
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {

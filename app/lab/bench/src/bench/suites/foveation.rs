@@ -19,8 +19,8 @@ use yoro::eyes::{Composition, EyePair, EyesError, Foveation, FoveationLevel};
 use yoro_files::interrupt;
 use yoro_gl::{Context, GlError};
 use yoro_metrics::{FlickerMeter, SsimWindow, psnr_where, ssim_where};
-use yoro_render::stereo::{Method, StereoError, StereoFrame};
-use yoro_render::{DepthReader, PreparedScene, Selection, ViewTargets};
+use yoro_render::stereo::{HoleMethod, Method, StereoError, StereoFrame};
+use yoro_render::{DepthReader, PreparedScene, ViewTargets};
 use yoro_report::stats::{geometric_mean, mean};
 use yoro_report::text::fixed;
 use yoro_report::{Cell, Section, Table};
@@ -205,7 +205,7 @@ impl Foveator {
                     level => format!("{name}-{}", level.name()),
                 },
                 is_synthesis: method == Method::Synthesized,
-                subject: Subject::foveated(gl, method, &job.render, level)?,
+                subject: Subject::foveated(gl, (method, HoleMethod::default()), &job.render, level, false)?,
             })
         });
         made.collect()
@@ -344,7 +344,7 @@ impl Silhouettes {
     fn find(&mut self, prepared: &mut PreparedScene, pair: &EyePair) -> Result<Vec<bool>, GlError> {
         let view = pair.view(pair.dominant.other());
         let PreparedScene { renderer, scene } = prepared;
-        let rendered = renderer.render(&mut self.targets, scene, &view, Selection::All)?;
+        let rendered = renderer.render(&mut self.targets, scene, &view)?;
         self.reader.copy(&rendered.depth, view.size)?;
         let distances: Vec<f32> =
             self.reader.read().iter().map(|depth| view.depth.distance(*depth)).collect();

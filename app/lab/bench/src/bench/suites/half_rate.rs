@@ -19,12 +19,13 @@ use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, Pose, View}
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_metrics::{Channels, EyeCamera, EyePose, SsimWindow, SubmittedEye, psnr, psnr_where, ssim};
-use yoro_render::stereo::{EyeTarget, Method, MotionTarget, StereoFrame};
+use yoro_render::stereo::{EyeTarget, HoleMethod, Method, MotionTarget, StereoFrame};
 use yoro_render::{DepthImage, DepthReader, PreparedScene};
 
 /// The ways of making the frame between. The runtime is emulated.
 const TWO_EYES: &str = "runtime-two-eyes";
 const ONE_EYE: &str = "runtime-one-eye";
+const RENDERED_HOLES: &str = "runtime-one-eye-holes-rendered";
 /// The colour of two eyes with the vectors and depth of one: what these alone lose.
 const VECTORS: &str = "runtime-made-vectors";
 const ROTATION: &str = "rotation";
@@ -99,6 +100,10 @@ impl Experiment for HalfRate {
         job.frames as u64
     }
 
+    fn moves(&self, _job: &Job) -> bool {
+        true
+    }
+
     /// Measures the frame between two renders of a moving scene, each against a real render at that time and pose.
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
         runner.announce(job, 0);
@@ -167,6 +172,7 @@ struct Contenders {
     whole: Subject,
     conventional: Subject,
     synthesized: Subject,
+    rendered_holes: Subject,
     mono: Subject,
     frame: StereoFrame,
     /// Vectors and depth of both eyes.
@@ -186,15 +192,18 @@ struct ReadBack {
 
 impl Contenders {
     fn new(gl: &Rc<Context>, job: &Job, level: FoveationLevel) -> Result<Contenders, GlError> {
-        let with_motion = |method, level| Subject::with_motion(gl, method, &job.render, level);
+        let filled = HoleMethod::Filled;
+        let with_motion =
+            |method, holes, level| Subject::foveated(gl, (method, holes), &job.render, level, true);
         let formats = [(Format::Rgba16F, Filter::Nearest)];
         let target = || RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F));
         Ok(Contenders {
             gl: gl.clone(),
-            whole: with_motion(Method::Conventional, FoveationLevel::Off)?,
-            conventional: with_motion(Method::Conventional, level)?,
-            synthesized: with_motion(Method::Synthesized, level)?,
-            mono: Subject::foveated(gl, Method::Mono, &job.render, level)?,
+            whole: with_motion(Method::Conventional, filled, FoveationLevel::Off)?,
+            conventional: with_motion(Method::Conventional, filled, level)?,
+            synthesized: with_motion(Method::Synthesized, filled, level)?,
+            rendered_holes: with_motion(Method::Synthesized, HoleMethod::Rendered, level)?,
+            mono: Subject::foveated(gl, (Method::Mono, filled), &job.render, level, false)?,
             frame: StereoFrame::new(gl, job.eyes.size)?,
             vectors: [target()?, target()?],
             depth: DepthReader::new(gl)?,
@@ -247,13 +256,18 @@ impl Contenders {
         scene.set_time(now.seconds)?;
         let to = self.targets(&previous.pair);
         let mut submit = |this: &mut Contenders, name: &str| {
-            let subject = if name == TWO_EYES { &mut this.conventional } else { &mut this.synthesized };
+            let subject = match name {
+                TWO_EYES => &mut this.conventional,
+                RENDERED_HOLES => &mut this.rendered_holes,
+                _ => &mut this.synthesized,
+            };
             let report = subject.render_to(scene, &now.pair, &to)?;
             ensure!(report.has_motion, "{name} has no motion vectors");
             Ok(this.read(eye, convention)?)
         };
-        let (two, one) = (submit(self, TWO_EYES)?, submit(self, ONE_EYE)?);
-        let [two_eyes, one_eye] = [&two, &one].map(|read| SubmittedEye {
+        let [two, one, holes] =
+            [submit(self, TWO_EYES)?, submit(self, ONE_EYE)?, submit(self, RENDERED_HOLES)?];
+        let [two_eyes, one_eye, holes] = [&two, &one, &holes].map(|read| SubmittedEye {
             rgba: &read.rgba,
             size,
             vectors: &read.vectors,
@@ -264,7 +278,7 @@ impl Contenders {
         });
         let made_vectors = SubmittedEye { rgba: &two.rgba, ..one_eye };
         let mut images: Vec<(&'static str, RgbImage)> =
-            [(TWO_EYES, two_eyes), (ONE_EYE, one_eye), (VECTORS, made_vectors)]
+            [(TWO_EYES, two_eyes), (ONE_EYE, one_eye), (RENDERED_HOLES, holes), (VECTORS, made_vectors)]
                 .map(|(name, submitted)| (name, image(&submitted.extrapolate(pose, 0.5))))
                 .into();
         images.push((ROTATION, image(&two_eyes.rotate(pose))));

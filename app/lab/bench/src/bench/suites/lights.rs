@@ -1,15 +1,10 @@
 //! Frame time with few lights
 
-use super::super::Experiment;
 use super::super::contender::Contender;
-use super::super::frames::{self, FrameMeasures};
-use super::super::job::{Choices, Job};
 use super::super::record::metric;
-use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
-use super::super::runner::Runner;
-use super::super::scenes::LazyObject;
+use super::super::results::{CONVENTIONAL, SettingData};
 use super::super::tables::{PapersColumn, mark_scenes, papers_entry, scene_table, time_details};
-use yoro_render::PreparedScene;
+use super::{COST, FrameSuite};
 use yoro_report::paper::{self, PAPER};
 use yoro_report::text::fixed;
 use yoro_report::{Axis, Entry, Plot, Section};
@@ -17,33 +12,18 @@ use yoro_report::{Axis, Entry, Plot, Section};
 /// The number of lights: the paper has fewer than five.
 const FEW_LIGHTS: usize = 4;
 
-/// Frame time with few lights.
-pub struct Lights;
-
-impl Experiment for Lights {
-    fn name(&self) -> &'static str {
-        "lights"
-    }
-
-    fn about(&self) -> &'static str {
-        "Frame time of every method with four lights: the paper's setting for single-pass instancing"
-    }
-
-    fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {
-        let contenders = choices.contenders(self.name(), Contender::methods(), &[Contender::CONVENTIONAL])?;
-        Ok(choices.sweep(self, choices.all_scenes(), [FEW_LIGHTS], |job, lights| {
-            job.contenders.clone_from(&contenders);
-            job.rounds = choices.rounds;
+pub(super) const LIGHTS: FrameSuite = FrameSuite {
+    name: "lights",
+    about: "Frame time of every method with four lights: the paper's setting for single-pass instancing",
+    measures: COST,
+    contenders: Contender::methods,
+    jobs: |suite, choices, _| {
+        choices.sweep(suite, choices.all_scenes(), [FEW_LIGHTS], |job, lights| {
             job.render.point_lights = lights;
             job.conditions.point = Some(lights as f64);
-        }))
-    }
-
-    fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
-        frames::measure(runner, job, scene, FrameMeasures { cost: true, quality: false, pictures: false })
-    }
-
-    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        })
+    },
+    sections: |suite| {
         let mut section = Section::new(
             "Few lights",
             "The paper's setting for single-pass instancing: fewer than five lights, basic post-processing. It gives means \
@@ -85,5 +65,5 @@ impl Experiment for Lights {
         ));
         section.table(time_details(suite, |_, _| None));
         vec![section]
-    }
-}
+    },
+};

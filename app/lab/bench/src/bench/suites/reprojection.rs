@@ -78,6 +78,10 @@ impl Experiment for Reprojection {
         job.frames as u64
     }
 
+    fn moves(&self, job: &Job) -> bool {
+        matches!(POSES[job.point], TargetPose::Late { .. })
+    }
+
     /// Measures the frames of the job, each against a real render at the pose where it is shown.
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
         runner.announce(job, 0);

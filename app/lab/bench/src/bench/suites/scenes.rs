@@ -1,52 +1,27 @@
 //! Frame time, overhead and quality on the eight scenes
 
-use super::super::Experiment;
 use super::super::contender::Contender;
-use super::super::frames::{self, FrameMeasures};
-use super::super::job::{Choices, Job};
 use super::super::record::{PassClock, metric};
 use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
-use super::super::runner::Runner;
-use super::super::scenes::LazyObject;
 use super::super::tables::{
     MetricColumn, PapersColumn, QUALITY_PLOTS, QualityPlot, cell, mark_scenes, means_table, metric_table,
     milliseconds, paper_scene, papers_entry, psnr_ssim, quality_of, scene_table, table_of, time_details,
 };
-use yoro_render::PreparedScene;
+use super::{BOTH_WITH_PICTURES, FrameSuite};
 use yoro_report::paper::{PAPER, SYSTEMS};
 use yoro_report::stats::{mean, unique};
 use yoro_report::text::fixed;
 use yoro_report::{Axis, Cell, Plot, Section, Table};
 
-/// Frame time, overhead and quality on the eight scenes.
-pub struct Scenes;
-
-impl Experiment for Scenes {
-    fn name(&self) -> &'static str {
-        "scenes"
-    }
-
-    fn about(&self) -> &'static str {
-        "Frame time and quality of every method on eight scenes"
-    }
-
-    fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {
-        let contenders = choices.contenders(self.name(), Contender::methods(), &Contender::BASELINES)?;
-        Ok(choices.sweep(self, choices.all_scenes(), [()], |job, ()| {
-            job.contenders.clone_from(&contenders);
-            job.rounds = choices.rounds;
-        }))
-    }
-
-    fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {
-        frames::measure(runner, job, scene, FrameMeasures { cost: true, quality: true, pictures: true })
-    }
-
-    /// The paper treats frame time, quality and overhead of the same eight scenes in three places.
-    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
-        vec![frame_time(suite), quality(suite), overhead(suite)]
-    }
-}
+pub(super) const SCENES: FrameSuite = FrameSuite {
+    name: "scenes",
+    about: "Frame time and quality of every method on eight scenes",
+    measures: BOTH_WITH_PICTURES,
+    contenders: Contender::methods,
+    jobs: |suite, choices, _| choices.sweep(suite, choices.all_scenes(), [()], |_, ()| {}),
+    // The paper treats frame time, quality and overhead of the same eight scenes in three places.
+    sections: |suite| vec![frame_time(suite), quality(suite), overhead(suite)],
+};
 
 /// Returns the paper's values of its systems over that of conventional rendering.
 fn over_conventional(values: [f64; 3]) -> Vec<(&'static str, f64)> {

@@ -63,6 +63,10 @@ impl Experiment for Stream {
         (job.frames * MODES.len() * QUANTIZERS.len()) as u64
     }
 
+    fn moves(&self, _job: &Job) -> bool {
+        true
+    }
+
     /// Encodes a walking head's frames in all modes at each quantizer, and measures both eyes at the poses of the head
     /// some frames later.
     fn measure(&self, runner: &mut Runner, job: &Job, scene: &mut PreparedScene) -> anyhow::Result<()> {

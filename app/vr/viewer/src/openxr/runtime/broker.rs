@@ -46,18 +46,19 @@ pub(super) fn ask(broker: &dyn Broker, authority: &str) -> Result<Vec<Result<Can
     let table = |path: &str, columns: &[&str]| {
         broker
             .query(&format!("content://{authority}/openxr/1/abi/{ABI}/runtimes/{path}/"), columns)
-            .map_err(|reason| Failure::Broker { authority: authority.into(), reason })
+            .map_err(|reason| Failure::Unusable(format!("the broker {authority} cannot be asked ({reason})")))
     };
     let rows = table("active", &[PACKAGE, FOLDER, FILE, HAS_FUNCTIONS])?
-        .ok_or_else(|| Failure::NoBroker { authority: authority.into() })?;
+        .ok_or_else(|| Failure::Absent(format!("no broker at {authority}")))?;
     if rows.is_empty() {
-        return Err(Failure::NoActiveRuntime { authority: authority.into() });
+        return Err(Failure::Absent(format!("the broker {authority} has no active runtime")));
     }
     let candidate = |row: Vec<Option<String>>| {
         let mut cells = row.into_iter();
         let mut text = |column| {
             let cell = cells.next().flatten().filter(|text| !text.is_empty());
-            cell.ok_or_else(|| Failure::BrokerRow { authority: authority.into(), column })
+            let missing = || format!("the broker {authority} names a runtime without {column}");
+            cell.ok_or_else(|| Failure::Unusable(missing()))
         };
         let (package, folder, file) = (text(PACKAGE), text(FOLDER)?, text(FILE)?);
         // What Cursor.getString returns for a number and for a truth value.
@@ -72,7 +73,8 @@ pub(super) fn ask(broker: &dyn Broker, authority: &str) -> Result<Vec<Result<Can
                 }
             }
             if functions.is_empty() {
-                return Err(Failure::BrokerFunctions { authority: authority.into(), package });
+                let what = format!("the broker {authority} does not tell the function names of {package}");
+                return Err(Failure::Unusable(what));
             }
         }
         Ok(Candidate { library: Path::new(&folder).join(file), functions })

@@ -92,15 +92,20 @@ impl Candidate {
         };
         // SAFETY: both structures are complete and outlive the call.
         let result = unsafe { negotiate(&loader, &mut request) };
-        let path = || self.library.clone();
         if result.into_raw() < 0 {
-            return Err(Failure::Refused { library: path(), result });
+            return Err(self.fails(format!("refuses loader interface 1 with OpenXR 1 ({result})")));
         }
         let (interface, api) = (request.runtime_interface_version, request.runtime_api_version);
         if interface != INTERFACE || api.major() != 1 {
-            return Err(Failure::Version { library: path(), interface, api });
+            return Err(self.fails(format!(
+                "negotiates loader interface {interface} and OpenXR {}.{}; needed are interface 1 and OpenXR 1",
+                api.major(),
+                api.minor()
+            )));
         }
-        let get = request.get_instance_proc_addr.ok_or_else(|| Failure::NoEntryPoint { library: path() })?;
+        let get = request.get_instance_proc_addr;
+        let get =
+            get.ok_or_else(|| self.fails("negotiates well and gives no xrGetInstanceProcAddr".into()))?;
         if let (Some(java), None) = (java, initialize) {
             self.initialize_by(get, java)?;
         }
@@ -131,13 +136,17 @@ impl Candidate {
             // glibc's message begins with the path, which the failure contains already.
             let reason = error.to_string();
             let path = format!("{}: ", self.library.display());
-            let reason = reason.strip_prefix(&path).unwrap_or(&reason).to_owned();
-            Failure::Open { library: self.library.clone(), reason }
+            let reason = reason.strip_prefix(&path).unwrap_or(&reason);
+            Failure::Unloadable(format!("{} cannot be loaded ({reason})", self.library.display()))
         })
     }
 
     fn no_symbol(&self, symbol: String, kind: &'static str) -> Failure {
-        Failure::Symbol { library: self.library.clone(), symbol, kind }
+        self.fails(format!("has no function {symbol}: it is not an OpenXR {kind}"))
+    }
+
+    fn fails(&self, what: String) -> Failure {
+        Failure::Unusable(format!("{} {what}", self.library.display()))
     }
 
     /// Returns a function by its name in the specification. The error is the name that was looked up.
@@ -174,7 +183,9 @@ impl Candidate {
         // SAFETY: the structure is the one that Android's runtimes and loaders take, and it outlives the call.
         let result = unsafe { initialize((&raw const info).cast()) };
         if result.into_raw() < 0 {
-            return Err(Failure::Initialize { library: self.library.clone(), result });
+            return Err(
+                self.fails(format!("refuses to be initialised with xrInitializeLoaderKHR ({result})"))
+            );
         }
         Ok(())
     }

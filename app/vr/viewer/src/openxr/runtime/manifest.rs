@@ -26,14 +26,18 @@ struct Runtime {
 
 /// Returns the library that the manifest at `path` names.
 pub(super) fn read(path: &Path) -> Result<Candidate, Failure> {
-    let text = fs::read(path).map_err(|source| match source.kind() {
-        io::ErrorKind::NotFound => Failure::NoManifest { path: path.into() },
-        _ => Failure::ReadManifest { path: path.into(), source },
+    let name = path.display();
+    let text = fs::read(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => Failure::Absent(format!("{name} does not exist")),
+        _ => Failure::Unusable(format!("the manifest {name} cannot be read ({error})")),
     })?;
-    let manifest: Manifest =
-        serde_json::from_slice(&text).map_err(|source| Failure::Manifest { path: path.into(), source })?;
-    if manifest.file_format_version != "1.0.0" {
-        return Err(Failure::ManifestVersion { path: path.into(), version: manifest.file_format_version });
+    let manifest: Manifest = serde_json::from_slice(&text).map_err(|error| {
+        Failure::Unusable(format!("{name} is not the manifest of an OpenXR runtime ({error})"))
+    })?;
+    let version = manifest.file_format_version;
+    if version != "1.0.0" {
+        let what = format!("the manifest {name} is of format {version}; only 1.0.0 is known");
+        return Err(Failure::Unusable(what));
     }
     let library = locate(&manifest.runtime.library_path, path);
     Ok(Candidate { library, functions: manifest.runtime.functions })

@@ -132,7 +132,7 @@ fn damaged_manifests_are_named() {
     }
     let folder = tempfile::tempdir().unwrap();
     let error = find(&[RuntimeSource::Manifest(folder.path().into())], &NoBroker, None).unwrap_err();
-    assert!(matches!(error.attempts[0].1, Failure::ReadManifest { .. }), "{error}");
+    assert!(error.to_string().contains("cannot be read"), "{error}");
 }
 
 #[test]
@@ -272,7 +272,7 @@ fn a_broker_renames_functions() {
         let renamed = row(&["xrNegotiateLoaderRuntimeInterface", "negotiate_refuse"]);
         broker.tables.insert(functions.clone(), Ok(Some(vec![renamed])));
         let error = find(&brokers(), &broker, None).unwrap_err();
-        assert!(matches!(error.attempts[0].1, Failure::Refused { .. }), "{error}");
+        assert!(error.to_string().contains("refuses loader interface 1"), "{error}");
         assert!(broker.asked.borrow().contains(&functions));
     }
 }

@@ -9,7 +9,7 @@ use super::state::{PanelImages, RuntimeLevel, Session, Spaces};
 use crate::openxr::description::{Description, Options};
 #[cfg(target_os = "android")]
 use crate::openxr::error::check;
-use crate::openxr::error::{XrError, call, optional};
+use crate::openxr::error::{XrError, call, optional, without};
 use crate::openxr::fixed_foveation::{self, FixedFoveation};
 use crate::openxr::graphics::{self, make_current};
 use crate::openxr::images::{EyeImages, ImageSpec, Images};
@@ -125,7 +125,7 @@ fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance,
     let offered = call("xrEnumerateInstanceExtensionProperties", entry.enumerate_extensions())?;
     let mut enabled = xr::ExtensionSet::default();
     if !offered.khr_opengl_es_enable {
-        return Err(XrError::Extension { extension: "XR_KHR_opengl_es_enable" });
+        return Err(without("XR_KHR_opengl_es_enable"));
     }
     enabled.khr_opengl_es_enable = true;
     #[cfg(target_os = "android")]
@@ -136,7 +136,7 @@ fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance,
     #[cfg(not(target_os = "android"))]
     {
         if !offered.mndx_egl_enable {
-            return Err(XrError::Extension { extension: "XR_MNDX_egl_enable" });
+            return Err(without("XR_MNDX_egl_enable"));
         }
         enabled.mndx_egl_enable = true;
     }

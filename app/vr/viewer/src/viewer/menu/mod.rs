@@ -11,11 +11,44 @@ use logic::{Choice, Item, Look};
 use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_gl::Destination;
 use yoro_render::stereo::StereoSession;
-use yoro_settings::{Setting, Settings};
+use yoro_settings::{HoleMethod, Pipeline, Setting, Settings};
 
-/// The quality levels: name, `render-scale`, `adaptive`, `msaa` and `foveation`.
-const QUALITIES: [(&str, f32, bool, u32, &str); 3] =
-    [("saving", 0.7, true, 2, "medium"), ("balanced", 1.0, false, 4, "auto"), ("best", 1.4, false, 4, "off")];
+/// A quality level: its name, and the settings that it stands for.
+struct QualityLevel {
+    name: &'static str,
+    render_scale: f32,
+    adaptive: bool,
+    msaa: u32,
+    foveation: &'static str,
+    holes: HoleMethod,
+}
+
+const QUALITIES: [QualityLevel; 3] = [
+    QualityLevel {
+        name: "saving",
+        render_scale: 0.7,
+        adaptive: true,
+        msaa: 2,
+        foveation: "medium",
+        holes: HoleMethod::Filled,
+    },
+    QualityLevel {
+        name: "balanced",
+        render_scale: 1.0,
+        adaptive: false,
+        msaa: 4,
+        foveation: "auto",
+        holes: HoleMethod::Filled,
+    },
+    QualityLevel {
+        name: "best",
+        render_scale: 1.4,
+        adaptive: false,
+        msaa: 4,
+        foveation: "off",
+        holes: HoleMethod::Rendered,
+    },
+];
 
 impl Viewer {
     /// Updates the menu with the head's pose relative to the viewpoint and the rays of controllers, each along its
@@ -131,12 +164,16 @@ impl Viewer {
             }
             Item::Quality => {
                 let at = self.quality().map_or(1, |at| (at + 1) % QUALITIES.len());
-                let (_, scale, adaptive, msaa, foveation) = QUALITIES[at];
+                let level = &QUALITIES[at];
+                // The paper's pipeline has no others.
+                let is_gather = self.settings.pipeline == Pipeline::Gather;
+                let holes = if is_gather { level.holes } else { HoleMethod::Filled };
                 self.want(&[
-                    ("render-scale", scale.to_string()),
-                    ("adaptive", adaptive.to_string()),
-                    ("msaa", msaa.to_string()),
-                    ("foveation", foveation.into()),
+                    ("render-scale", level.render_scale.to_string()),
+                    ("adaptive", level.adaptive.to_string()),
+                    ("msaa", level.msaa.to_string()),
+                    ("foveation", level.foveation.into()),
+                    ("holes", holes.name().into()),
                 ])
             }
             Item::Reset => self.reset(),
@@ -182,9 +219,7 @@ impl Viewer {
 
     fn quality(&self) -> Option<usize> {
         let Settings { render_scale, adaptive, .. } = self.settings;
-        QUALITIES
-            .iter()
-            .position(|&(_, scale, is_adaptive, ..)| (scale, is_adaptive) == (render_scale, adaptive))
+        QUALITIES.iter().position(|level| (level.render_scale, level.adaptive) == (render_scale, adaptive))
     }
 
     /// Returns the settings that the menu asks for, once, for the display to apply.
@@ -214,7 +249,7 @@ impl Viewer {
         let text =
             |key: &str| Setting::find(key).map_or_else(String::new, |setting| setting.text(&self.settings));
         let synthesized = self.synthesized_eye();
-        let quality = self.quality().map_or("own", |at| QUALITIES[at].0);
+        let quality = self.quality().map_or("own", |at| QUALITIES[at].name);
         let tiles = Item::ALL.map(|item| match item {
             Item::Recenter => "Recenter".into(),
             Item::Scene => format!("Scene\n{}", self.scene.name),

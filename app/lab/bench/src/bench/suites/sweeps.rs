@@ -1,0 +1,176 @@
+//! Experiments that vary one quantity, or one setting.
+
+use super::super::contender::Contender;
+use super::super::job::Source;
+use super::super::tables::{Labels, Sweep};
+use super::{BOTH, BOTH_WITH_PICTURES, FrameSuite, QUALITY};
+use yoro_assets::ShadingStyle;
+use yoro_render::MSAA;
+use yoro_render::stereo::Pipeline;
+use yoro_report::paper::{DISTANCE as PAPERS_DISTANCE, PAPER};
+use yoro_report::{Axis, Section};
+
+pub(super) const STYLES: FrameSuite = FrameSuite {
+    name: "styles",
+    about: "Quality in each shading style",
+    measures: QUALITY,
+    contenders: Contender::synthesis,
+    jobs: |suite, choices, _| {
+        choices.sweep(suite, choices.varied_scenes(), ShadingStyle::ALL, |job, style| {
+            job.style = Some(style);
+            job.conditions.label = Some(style.name().to_owned());
+        })
+    },
+    sections: |suite| {
+        let mut section = Section::new(
+            "Shading styles",
+            "The same synthesis under five styles of shading. In the paper, each style is a separate scene.",
+        );
+        let labels = Labels {
+            column: "<style",
+            title: "PSNR in dB / SSIM, means over the scenes",
+            details: "Every scene and style in full",
+            papers: Some(|label| PAPER.styles.get(label).copied()),
+            timed: false,
+        };
+        labels.show(&mut section, suite);
+        vec![section]
+    },
+};
+
+pub(super) const IPD: FrameSuite = FrameSuite {
+    name: "ipd",
+    about: "Quality as the distance between the eyes grows from 50 to 75 mm",
+    measures: QUALITY,
+    contenders: Contender::synthesis,
+    jobs: |suite, choices, _| {
+        let millimetres: &[u32] = choices.long_or_quick(&[50, 55, 60, 65, 70, 75], &[50, 63, 75]);
+        choices.sweep(suite, choices.varied_scenes(), millimetres.iter().copied(), |job, mm| {
+            job.eyes.ipd = mm as f32 * 1e-3;
+            job.conditions.point = Some(f64::from(mm));
+        })
+    },
+    sections: |suite| {
+        let mut section = Section::new(
+            "Distance between the eyes",
+            "Quality of the synthesized eye against the interpupillary distance.",
+        );
+        let sweep = Sweep { axis: Axis::new("IPD, mm"), text: |point| format!("{point}") };
+        sweep.show_quality(&mut section, suite, &PAPER.sweeps["ipd"]);
+        vec![section]
+    },
+};
+
+pub(super) const DISTANCE: FrameSuite = FrameSuite {
+    name: "distance",
+    about: "Quality as an object, equally large on the screen, moves from 0.5 to 3 m",
+    measures: QUALITY,
+    contenders: Contender::synthesis,
+    jobs: |suite, choices, object| {
+        let metres: &[f32] = choices.long_or_quick(&[0.5, 1.0, 1.5, 2.0, 2.5, 3.0], &[0.5, 1.0, 3.0]);
+        choices.sweep(suite, vec![object.name.clone()], metres.iter().copied(), |job, metres| {
+            job.source = Source::Object(metres);
+            job.conditions.point = Some(f64::from(metres));
+        })
+    },
+    sections: |suite| {
+        let [ssim, psnr] = PAPERS_DISTANCE;
+        let mut section = Section::new(
+            "Distance of the object",
+            format!(
+                "Quality against the distance of one irregular object, scaled so that it keeps its size on the screen. \
+                 The paper shows its curve as a picture only; its text says SSIM {ssim} and {psnr} dB for 0.5 to 3 m."
+            ),
+        );
+        let sweep = Sweep { axis: Axis::new("distance, m"), text: |point| format!("{point}") };
+        sweep.show_quality(&mut section, suite, &[]);
+        vec![section]
+    },
+};
+
+pub(super) const IMBUFFER: FrameSuite = FrameSuite {
+    name: "imbuffer",
+    about: "Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation",
+    measures: BOTH,
+    contenders: || {
+        let paper =
+            [Contender::Synthesized(Pipeline::Paper), Contender::PaperNearest, Contender::PaperStrict];
+        [&Contender::BASELINES[..], &paper].concat()
+    },
+    jobs: |suite, choices, _| {
+        choices.sweep(suite, choices.varied_scenes(), [1, 2, 4, 8, 16], |job, divisor| {
+            job.imbuffer = divisor;
+            job.conditions.point = Some(f64::from(divisor));
+        })
+    },
+    sections: |suite| {
+        let mut section = Section::new(
+            "ImBuffer",
+            "The paper's pipeline with a smaller ImBuffer: its width and height are the image's over the divisor, with \
+             and without linear interpolation.",
+        );
+        let axis = Axis::new("ImBuffer divisor").logarithmic();
+        let sweep = Sweep { axis, text: |point| format!("1/{point}") };
+        sweep.show_quality(&mut section, suite, &[]);
+        sweep.show_times(&mut section, suite);
+        vec![section]
+    },
+};
+
+pub(super) const RESOLUTION: FrameSuite = FrameSuite {
+    name: "resolution",
+    about: "Frame time and quality of every method from 512 to 2048 pixels per eye",
+    measures: BOTH,
+    contenders: Contender::methods,
+    jobs: |suite, choices, _| {
+        let pixels: &[u32] = choices.long_or_quick(&[512, 1024, 1536, 2048], &[256, 512]);
+        choices.sweep(suite, choices.varied_scenes(), pixels.iter().copied(), |job, pixels| {
+            job.eyes.size = [pixels; 2];
+            job.conditions.point = Some(f64::from(pixels));
+            job.frames = 1;
+        })
+    },
+    sections: |suite| {
+        let mut section = Section::new(
+            "Resolution",
+            "Cost and quality against the width of each eye's image. The paper measured at its devices' own resolution \
+             only.",
+        );
+        let sweep = Sweep { axis: Axis::new("width of an eye, pixels"), text: |point| format!("{point}") };
+        sweep.show_times(&mut section, suite);
+        sweep.show_quality(&mut section, suite, &[]);
+        vec![section]
+    },
+};
+
+pub(super) const ANTI_ALIASING: FrameSuite = FrameSuite {
+    name: "anti-aliasing",
+    about: "Quality and frame time with one, two and four samples per pixel",
+    measures: BOTH_WITH_PICTURES,
+    contenders: || [&Contender::BASELINES[..], &[Contender::Synthesized(Pipeline::Gather)]].concat(),
+    jobs: |suite, choices, _| {
+        choices.sweep(suite, choices.all_scenes(), MSAA, |job, samples| {
+            job.render.msaa = samples;
+            job.conditions.label = Some(match samples {
+                1 => "1 sample".to_owned(),
+                n => format!("{n} samples"),
+            });
+        })
+    },
+    sections: |suite| {
+        let mut section = Section::new(
+            "Anti-aliasing",
+            "Each synthesized eye against the same eye rendered with as many samples per pixel. Synthesis takes the mean \
+             colour and the nearest depth of each pixel's samples.",
+        );
+        let labels = Labels {
+            column: "<samples per pixel",
+            title: "PSNR in dB / SSIM / frame time over two renders, means over the scenes",
+            details: "Every scene in full",
+            papers: None,
+            timed: true,
+        };
+        labels.show(&mut section, suite);
+        vec![section]
+    },
+};
