@@ -2,6 +2,7 @@
 //! do the settings, which the compiler of HLSL gets as macros. A compiler tells if a rule is missing.
 
 use std::fmt::Write as _;
+use std::sync::LazyLock;
 
 use regex::{Captures, Regex};
 
@@ -87,9 +88,9 @@ pub fn from_glsl(glsl: &str, is_vertex: bool, title: &str, (block, layout): (&st
         (_, true, true) => format!("{PIXEL}#ifdef WRITE_DEPTH\n{DEPTH}#endif\n"),
     };
     let text = with_calls(with_constructors(with_entry_point(&(own + &text), is_vertex)));
-    let declares = Regex::new(r"(?m)^\w+ (\w+)\(").unwrap();
     let is_called = |function: &&str| {
-        declares.captures(function).is_some_and(|found| has(&text, &format!(r"\b{}\(", &found[1])))
+        let name = function.split('(').next().and_then(|before| before.rsplit(' ').next());
+        name.is_some_and(|name| calls(&text, name).next().is_some())
     };
     let added: String = FUNCTIONS.split_inclusive("\n\n").filter(is_called).collect();
     let head = head(&text, is_vertex, title, block);
@@ -98,7 +99,10 @@ pub fn from_glsl(glsl: &str, is_vertex: bool, title: &str, (block, layout): (&st
 
 /// Rewrites declarations. Each member of the block stands where the layout has it.
 fn with_declarations(text: &str, layout: Layout) -> String {
-    let text = DECLARATIONS.iter().fold(text.to_owned(), |text, (from, to)| replace(&text, from, to));
+    static RULES: LazyLock<Vec<(Regex, &str)>> =
+        LazyLock::new(|| DECLARATIONS.iter().map(|&(pattern, to)| (regex(pattern), to)).collect());
+    let text =
+        RULES.iter().fold(text.to_owned(), |text, (from, to)| from.replace_all(&text, *to).into_owned());
     let text = rewrite(&text, r"(?m)^UNIFORM (\w+ (\w+));", |found| {
         let (.., offset) =
             layout.iter().find(|(name, ..)| *name == &found[2]).expect("a member of the block");
@@ -123,28 +127,53 @@ fn with_calls(mut text: String) -> String {
                 [one] => format!("({hlsl})({one})"),
                 _ => format!("{hlsl}({})", arguments.join(", ")),
             });
-            text = replace(&text, &format!(r"\b{glsl}\b"), &hlsl);
+            text = replace_word(&text, &glsl, &hlsl);
         }
     }
     text = replace(&text, r"(\w+) != (\(\w+\)\(0\))", "any($1 != $2)");
-    let words = WORDS.map(|(glsl, hlsl)| (Regex::new(&format!(r"\b{glsl}\b")).unwrap(), hlsl));
-    rewrite(&text, r"(?m)^(.*?)(//.*)?$", |found| {
-        let put = |code: String, (glsl, hlsl): &(Regex, &str)| glsl.replace_all(&code, *hlsl).into_owned();
-        let comment = found.get(2).map_or("", |comment| comment.as_str());
-        words.iter().fold(found[1].to_owned(), put) + comment
+    let lines = text.split_inclusive('\n').map(|line| {
+        let (code, comment) = line.split_at(line.find("//").unwrap_or(line.len()));
+        WORDS.iter().fold(code.to_owned(), |code, (glsl, hlsl)| replace_word(&code, glsl, hlsl)) + comment
+    });
+    lines.collect()
+}
+
+/// Returns where a word begins in a text.
+fn places<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a {
+    let is_part = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');
+    text.match_indices(word).map(|(at, _)| at).filter(move |at| {
+        let (before, after) = (&text[..*at], &text[at + word.len()..]);
+        !is_part(before.chars().next_back()) && !is_part(after.chars().next())
     })
 }
 
-fn has(text: &str, pattern: &str) -> bool {
-    Regex::new(pattern).unwrap().is_match(text)
+/// Returns where calls of a function begin.
+fn calls<'a>(text: &'a str, name: &'a str) -> impl Iterator<Item = usize> + 'a {
+    places(text, name).filter(|at| text[at + name.len()..].starts_with('('))
+}
+
+fn replace_word(text: &str, word: &str, replacement: &str) -> String {
+    let (mut replaced, mut from) = (String::new(), 0);
+    for at in places(text, word) {
+        replaced.extend([&text[from..at], replacement]);
+        from = at + word.len();
+    }
+    replaced + &text[from..]
+}
+
+/// Compiles a pattern whose classes are those of ASCII, which are far smaller.
+fn regex(pattern: &str) -> Regex {
+    let classes = [(r"\w", "[A-Za-z0-9_]"), (r"\d", "[0-9]"), (r"\s", "[ \n]"), (r"\b", r"(?-u:\b)")];
+    let pattern = classes.iter().fold(pattern.to_owned(), |pattern, (from, to)| pattern.replace(from, to));
+    Regex::new(&pattern).expect("a pattern")
 }
 
 fn replace(text: &str, pattern: &str, replacement: &str) -> String {
-    Regex::new(pattern).unwrap().replace_all(text, replacement).into_owned()
+    regex(pattern).replace_all(text, replacement).into_owned()
 }
 
 fn rewrite(text: &str, pattern: &str, replacement: impl Fn(&Captures) -> String) -> String {
-    Regex::new(pattern).unwrap().replace_all(text, |found: &Captures| replacement(found)).into_owned()
+    regex(pattern).replace_all(text, |found: &Captures| replacement(found)).into_owned()
 }
 
 /// A condition of the preprocessor. If it stays in the text, both of its branches do.
@@ -189,7 +218,7 @@ fn with_entry_point(text: &str, is_vertex: bool) -> String {
     const FIELD: &str = r"(?m)(^#if.*\n)?^(?:layout\(location = |VARYING\()(\w+)\) (in|out) (\w+) (\w+);";
     let (mut arguments, mut members, mut before, mut after) =
         (Vec::new(), String::new(), String::new(), String::new());
-    for found in Regex::new(FIELD).unwrap().captures_iter(text) {
+    for found in regex(FIELD).captures_iter(text) {
         let [place, direction, kind, name] = [2, 3, 4, 5].map(|i| &found[i]);
         let semantic = match (place.parse::<u32>(), is_vertex || direction == "in") {
             (Err(_), _) => place.to_owned(),
@@ -220,15 +249,15 @@ fn with_entry_point(text: &str, is_vertex: bool) -> String {
 
 /// Adds a function that makes a structure of its members, for each that the text makes so.
 fn with_constructors(mut text: String) -> String {
-    let member = Regex::new(r"(?m)^\s+(\w+) (\w+);").unwrap();
-    let structures = Regex::new(r"(?s)\nstruct (\w+) \{\n(.*?)\n\};\n").unwrap();
+    let member = regex(r"(?m)^\s+(\w+) (\w+);");
+    let structures = regex(r"(?s)\nstruct (\w+) \{\n(.*?)\n\};\n");
     let found: Vec<_> =
         structures.captures_iter(&text).map(|found| [0, 1, 2].map(|i| found[i].to_owned())).collect();
     for [whole, name, members] in found {
-        if !has(&text, &format!(r"\b{name}\(")) {
+        if calls(&text, &name).next().is_none() {
             continue;
         }
-        text = replace(&text, &format!(r"\b{name}\("), &format!("make_{name}("));
+        text = rewrite_calls(text, &name, |arguments| format!("make_{name}({})", arguments.join(", ")));
         let members: Vec<_> =
             member.captures_iter(&members).map(|found| [1, 2].map(|i| found[i].to_owned())).collect();
         let arguments: Vec<_> = members.iter().map(|member| member.join(" ")).collect();
@@ -244,9 +273,9 @@ fn with_constructors(mut text: String) -> String {
 
 /// Rewrites all calls of a function, the innermost first.
 fn rewrite_calls(mut text: String, name: &str, call: impl Fn(&[&str]) -> String) -> String {
-    let pattern = Regex::new(&format!(r"\b{name}\(")).unwrap();
-    let starts: Vec<_> = pattern.find_iter(&text).map(|found| (found.start(), found.end())).collect();
-    for (start, first) in starts.into_iter().rev() {
+    let starts: Vec<_> = calls(&text, name).collect();
+    for start in starts.into_iter().rev() {
+        let first = start + name.len() + 1;
         let (mut depth, mut from, mut arguments) = (0, first, Vec::new());
         for (i, c) in text[first..].char_indices().map(|(i, c)| (first + i, c)) {
             match c {
@@ -272,7 +301,7 @@ fn rewrite_calls(mut text: String, name: &str, call: impl Fn(&[&str]) -> String)
 fn head(text: &str, is_vertex: bool, title: &str, block: &str) -> String {
     let stage = if is_vertex { "Vertex" } else { "Pixel" };
     let mut head = format!("{title}\n//\n// {stage} shader, Shader Model 5.0 or newer. Entry point: main.\n");
-    for found in Regex::new(r"(?m)^(\w+)(?:<.*>)? (\w+) : register\((\w\d)\)").unwrap().captures_iter(text) {
+    for found in regex(r"(?m)^(\w+)(?:<.*>)? (\w+) : register\((\w\d)\)").captures_iter(text) {
         let what = match (&found[1], found[2].contains("depth")) {
             ("cbuffer", _) => format!(", {block} of yoro_kit.h"),
             ("SamplerState", true) => ": point, clamp".to_owned(),
