@@ -17,7 +17,8 @@ const WRONG_TYPE: &str = "if (location.search === '?again') {
 
 #[test]
 fn a_link_sets_everything_and_the_page_lasts() {
-    let fragment = "#viewpoint=2&method=hybrid&msaa=1&holes=rendered&ipd=70&dominant=left&display=anaglyph&scale=0.5";
+    let fragment =
+        "#viewpoint=2&method=hybrid&msaa=1&holes=rendered&ipd=70&dominant=left&display=anaglyph&scale=0.5";
     let Some(mut page) = Page::open(fragment, Some(WRONG_TYPE)) else { return };
     let shown = "['viewpoint', 'method', 'msaa', 'holes', 'ipd', 'dominant', 'display', 'scale'].map((id) => \
                  document.getElementById(id).value).join()";

@@ -299,7 +299,8 @@ fn csharp_calls_the_library() {
     let at = |name: &str| work.path().join(name);
     let mut compiler = Command::new("mcs");
     compiler.args(["-unsafe", "-warnaserror", "-warn:4"]).arg(format!("-out:{}", at("calls.exe").display()));
-    run(compiler.args(["csharp/Yoro.cs", "csharp/Safe.cs", "tests/calls.cs"].map(|file| package().join(file))));
+    run(compiler
+        .args(["csharp/Yoro.cs", "csharp/Safe.cs", "tests/calls.cs"].map(|file| package().join(file))));
     std::os::unix::fs::symlink(library().join("libyoro_c.so"), at("libyoro.so")).unwrap();
     let mut mono = Command::new("mono");
     mono.arg(at("calls.exe")).env("LD_LIBRARY_PATH", work.path());

@@ -59,15 +59,8 @@ impl Group for Synthesis {
 pub struct Stereo;
 
 impl Group for Stereo {
-    const KEYS: &'static [&'static str] = &[
-        "pipeline",
-        "imbuffer",
-        "linear-interpolation",
-        "strict",
-        "guard-band",
-        "holes",
-        "switch",
-    ];
+    const KEYS: &'static [&'static str] =
+        &["pipeline", "imbuffer", "linear-interpolation", "strict", "guard-band", "holes", "switch"];
 }
 
 /// The settings of stereo frames whose pipelines are compared, each as its name says: none is switched to two renders.

@@ -22,9 +22,8 @@ fn options(holes: HoleMethod) -> StereoOptions {
 impl Pictures {
     fn new(rig: &mut Rig, settings: &RenderSettings, pair: &EyePair) -> Pictures {
         let gl = rig.gl();
-        let mut draw = |method, holes| {
-            rig.render(&mut session_of(&gl, method, settings, &options(holes)), pair)
-        };
+        let mut draw =
+            |method, holes| rig.render(&mut session_of(&gl, method, settings, &options(holes)), pair);
         let dominant = pair.dominant.index();
         let truth = draw(Method::Conventional, HoleMethod::Filled);
         let filled = draw(Method::Synthesized, HoleMethod::Filled);

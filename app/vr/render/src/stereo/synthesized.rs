@@ -8,9 +8,7 @@ use super::motion::SynthesizedMotion;
 use super::options::{HoleMethod, Pipeline, PipelineOptions, StereoOptions};
 use super::overlay::{OverlayPass, OverlaySurfaces};
 use super::pipeline::Synthesis;
-use crate::view::{
-    DepthResolve, GpuScene, HoleSource, InkedHoles, Layout, RenderedDepth, Renderer, Targets,
-};
+use crate::view::{DepthResolve, GpuScene, HoleSource, InkedHoles, Layout, RenderedDepth, Renderer, Targets};
 use yoro::eyes::{Eye, SynthesisViews};
 use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Source};
 use yoro::synthesis::{HoleMark, Holes};
