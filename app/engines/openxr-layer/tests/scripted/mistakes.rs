@@ -5,7 +5,7 @@ use openxr_sys as sys;
 use sys::{Handle as _, Result as Code, ViewConfigurationType as ViewsOf};
 use yoro_openxr_stub::script::{At, Event, Script, What};
 
-use crate::checks::{assert_seen, views_of};
+use crate::checks::assert_seen;
 use crate::client::{Client, DEPTH, Failure, Layer, Outcome, Part, Planes, Submitted};
 use crate::habits::{
     Chains, D32, Habits, SRGB, begin_rendered, begin_session, frame, frames, run, run_shrunk, with_session,
