@@ -8,7 +8,7 @@ use yoro::vulkan::ash::vk;
 
 use crate::client::{Chain, Client, DEPTH, Frame, Outcome, Part, Planes, Submitted, View};
 use crate::drawing::Drawing;
-use crate::world::uncounted;
+use crate::world::{script, uncounted, watched};
 
 pub const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
 pub const D32: vk::Format = vk::Format::D32_SFLOAT;
@@ -148,6 +148,12 @@ pub fn run<'a>(drawing: impl Into<Drawing<'a>>, habits: &Habits) -> Outcome<Clie
     frames(&mut client, &chains, habits, habits.frames)?;
     client.destroy_session()?;
     Ok(client)
+}
+
+/// Runs an application of this name once, so that the layer knows the exact size of what it offers. In the first start it
+/// offers an estimate, whose views are a little wider.
+pub fn learn_size<'a>(drawing: impl Into<Drawing<'a>>, name: &'static str) {
+    watched(script(), || drop(run(drawing, &Habits { name, frames: 1, ..Habits::PLAIN }).unwrap()));
 }
 
 /// Runs an application with a session and swapchains, which `work` uses.

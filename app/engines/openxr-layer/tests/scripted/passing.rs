@@ -7,7 +7,9 @@ use yoro_openxr_stub::script::{At, Event, Script, What};
 
 use crate::checks::{assert_own_eyes, assert_seen, psnr, truth};
 use crate::client::{Client, DEPTH, Failure, Layer};
-use crate::habits::{Chains, Habits, begin_rendered, begin_session, frames, render, run, with_session};
+use crate::habits::{
+    Chains, Habits, begin_rendered, begin_session, frames, learn_size, render, run, with_session,
+};
 use crate::world::{faulty, script, watched, with_gpu};
 
 /// An application that renders both views gets the runtime's own. Its layers and depth arrive unchanged.
@@ -254,6 +256,7 @@ fn an_application_can_be_left_alone() {
 fn extensions_know_the_offered_view() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
+        learn_size(gpu, habits.name);
         let event = Event { at: At::Frame(3), what: What::MaskChanged };
         let seen = watched(Script { mono: false, events: vec![event], ..script() }, || {
             let extensions =

@@ -13,8 +13,8 @@ use crate::checks::{
 use crate::client::{Client, DEPTH, Failure, Layer, Part, Planes, Submitted};
 use crate::drawing::{Drawing, with_gles};
 use crate::habits::{
-    Chains, D32, Habits, SRGB, begin_rendered, begin_session, frame, frames, render, run, run_shrunk,
-    with_session,
+    Chains, D32, Habits, SRGB, begin_rendered, begin_session, frame, frames, learn_size, render, run,
+    run_shrunk, with_session,
 };
 use crate::world::{faulty, script, watched, with_gpu};
 
@@ -40,6 +40,7 @@ fn one_view_becomes_the_two_views_of_the_runtime() {
         ("a part of it, swapped", depth(f32::INFINITY, 0.1, 0.5, 1.0)),
     ];
     with_gpu(|gpu| {
+        ["left", "right"].iter().for_each(|name| learn_size(gpu, name));
         for (what, habits) in cases {
             let mut client = None;
             let script = script();
@@ -138,12 +139,17 @@ fn other_layers_stay_as_they_are_and_in_order() {
 fn shrink_replaces_the_tiny_view() {
     with_gpu(|gpu| {
         let habits = Habits { name: "shrink", ..Habits::PLAIN };
-        let seen = watched(script(), || {
-            let show = |client: &mut Client, frame, both: [Submitted; 2]| {
-                client.end_frame(frame, &[Layer::Projection(both.into())])
-            };
-            run_shrunk(gpu, &habits, 3, show).unwrap();
-        });
+        let shrunk = || {
+            watched(script(), || {
+                let show = |client: &mut Client, frame, both: [Submitted; 2]| {
+                    client.end_frame(frame, &[Layer::Projection(both.into())])
+                };
+                run_shrunk(gpu, &habits, 3, show).unwrap();
+            })
+        };
+        // The first start has an estimate of the size.
+        shrunk();
+        let seen = shrunk();
         assert_counts(&seen, &[[3, 0]], "a tiny view");
         assert_eq!(seen.count_in_log("renders a tiny image for the left eye"), 1, "{}", seen.layer_log);
         assert_own_eyes(&seen, &script(), 0.0, "a tiny view");
