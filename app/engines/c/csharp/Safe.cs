@@ -152,6 +152,9 @@ namespace Yoro
             context = created;
         }
 
+        /// <summary>For the calls of Yoro.cs that this class does not have.</summary>
+        public YoroContext* Context { get { return context; } }
+
         /// <summary>Allocates what frames of this size need, so that none of them does.</summary>
         public void Prepare(YoroWarp warp) { Errors.Check(Native.yoro_gl_prepare(context, &warp)); }
 
@@ -172,9 +175,11 @@ namespace Yoro
         /// <summary>Frees the shaders and buffers.</summary>
         public void Dispose()
         {
-            YoroContext* ended = context;
-            context = null;
-            if (ended != null) Errors.Check(Native.yoro_destroy(ended));
+            if (context == null) return;
+            int result = Native.yoro_destroy(context);
+            // Another thread is inside a call: nothing was freed.
+            if (result != Native.YORO_ERROR_BUSY) context = null;
+            Errors.Check(result);
         }
     }
 }

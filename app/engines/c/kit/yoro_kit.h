@@ -183,7 +183,7 @@ static inline void yoro_kit_place(const YoroKitEyes *eyes, double place[2]) {
  *
  * Vectors that a game has for an upscaler mostly point from a surface's place to its previous one, in pixels or in texture
  * coordinates, and have y down. Multiply pixels by -2 / width and -2 / height, and texture coordinates by -2; where the runtime
- * takes y up, multiply y by 2 instead. They lack z. With 0 in its place, a surface keeps the disparity that it had before it
+ * takes y up, multiply y by 2 / height, or by 2. They lack z. With 0 in its place, a surface keeps the disparity that it had before it
  * came nearer.
  */
 static inline void yoro_kit_motion(const YoroKitEyes *eyes, const YoroKitEyes *previous, int minus_one, float motion[4]) {

@@ -65,6 +65,10 @@ static unsafe class Calls
         }
         Print("matrices", Stereo.Views(matrices));
 
+        // Depth is reversed if the planes of the projections are.
+        for (int i = 2; i < 32; i += 4) matrices.projection[i] = -matrices.projection[i];
+        Expect(Stereo.Views(matrices).warp.depth == Native.YORO_DEPTH_REVERSED, "reversed depth is not seen");
+
         YoroViews wide, inset;
         var foveation = new YoroFoveation { level = Native.YORO_FOVEATION_MEDIUM };
         YoroComposition[] compositions = Stereo.Levels(eyes, foveation, out wide, out inset);

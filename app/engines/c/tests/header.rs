@@ -108,7 +108,8 @@ fn csharp(source: &Path) -> String {
                 (Some(doc), _) => docs.push_str(doc),
                 (_, Some(rest)) => {
                     let (name, code) = rest.trim_end_matches(';').split_once(": YoroResult = ").unwrap();
-                    let docs = docs.trim();
+                    let doc = std::mem::take(&mut docs);
+                    let docs = doc.trim();
                     errors.push_str(&format!(
                         "        /// <summary>\n        ///  {docs}\n        /// </summary>\n        public const int YORO_ERROR_{name} = {code};\n"
                     ));

@@ -307,7 +307,7 @@ fn csharp_calls_the_library() {
     let expected = gles();
     if expected.is_some() {
         std::fs::write(at("engine.c"), ENGINE).unwrap();
-        let mut gcc = Command::new("gcc");
+        let mut gcc = Command::new("cc");
         gcc.args(["-shared", "-fPIC", "-I"]).arg(package().join("examples")).arg(at("engine.c"));
         run(gcc.args(["-lEGL", "-lGLESv2", "-lm", "-o"]).arg(at("libengine.so")));
         mono.arg(at("picture.png"));
