@@ -169,9 +169,9 @@ impl Node {
     /// True if the node jumps between two times, or had no extent at the first one, to which `clocks` are set.
     fn jumps(&self, loops: &[f32], clocks: &[f32], times: [f64; 2]) -> bool {
         let tracks = [&self.moves, &self.turns, &self.grows];
-        let is_flat = |track: &Track| track.vector(clocks).min_element() == 0.0;
+        let is_absent = |track: &Track| track.vector(clocks) == Vec3::ZERO;
         tracks.into_iter().flatten().any(|track| track.jumps(loops, times))
-            || self.grows.as_ref().is_some_and(is_flat)
+            || self.grows.as_ref().is_some_and(is_absent)
     }
 }
 

@@ -272,12 +272,12 @@ impl RenderTarget {
         self.gl.overwrite(&self.color_only(), self.color.len().min(2), false);
     }
 
-    /// Discards the depth, so that a tile-based GPU does not write it to memory.
+    /// Discards depth and stencil, so that a tile-based GPU does not write them to memory.
     pub fn discard_depth(&self) {
-        // SAFETY: this target's framebuffer has the attachment, or GL ignores the call.
+        // SAFETY: this target's framebuffer has the attachments, or GL ignores those that it lacks.
         unsafe {
             self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw()));
-            self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_ATTACHMENT]);
+            self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_STENCIL_ATTACHMENT]);
         }
     }
 

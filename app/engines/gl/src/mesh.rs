@@ -135,7 +135,7 @@ impl Mesh {
     ///
     /// # Panics
     /// If there are not as many.
-    pub fn rewrite_previous<V: bytemuck::Pod>(&mut self, first: usize, vertices: &[V]) {
+    pub fn rewrite_previous<V: bytemuck::Pod>(&self, first: usize, vertices: &[V]) {
         let bytes: &[u8] = bytemuck::cast_slice(vertices);
         let offset = first * self.vertex_bytes as usize;
         assert!(offset + bytes.len() <= self.vertex_count * self.vertex_bytes as usize, "too many vertices");

@@ -368,9 +368,9 @@ impl TileTarget {
         Destination { framebuffer: Some(self.framebuffer.raw), origin: [0, 0], size }
     }
 
-    /// Discards the depth. The framebuffer must be bound.
+    /// Discards depth and stencil. The framebuffer must be bound.
     pub fn discard_depth(&self) {
         // SAFETY: the bound framebuffer has the attachment.
-        unsafe { self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_ATTACHMENT]) }
+        unsafe { self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_STENCIL_ATTACHMENT]) }
     }
 }

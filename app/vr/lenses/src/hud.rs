@@ -189,7 +189,7 @@ impl Panel<'_> {
             for eye in Eye::BOTH {
                 let to = &eyes[eye.index()];
                 let (corner, size) = self.place(pair, eye);
-                let origin = [0, 1].map(|i| to.origin[i] + corner[i]);
+                let origin = [0, 1].map(|i| to.origin[i].saturating_add_signed(corner[i]));
                 self.hud.draw(&Destination { origin, size, ..*to });
             }
             gl.set_raster_state(&RasterState::SCREEN);
@@ -205,7 +205,7 @@ impl Panel<'_> {
         self.hud.set_text(program, unit).set("panel_place", place);
     }
 
-    fn place(&self, pair: &EyePair, eye: Eye) -> ([u32; 2], [u32; 2]) {
+    fn place(&self, pair: &EyePair, eye: Eye) -> ([i32; 2], [u32; 2]) {
         place(pair, eye, self.hud.used, self.placement)
     }
 }
@@ -219,7 +219,7 @@ fn below(placement: Placement) -> f32 {
 }
 
 /// Returns the origin and the size, in pixels of an eye's image, of the panel's upper `used` rows.
-fn place(pair: &EyePair, eye: Eye, used: usize, placement: Placement) -> ([u32; 2], [u32; 2]) {
+fn place(pair: &EyePair, eye: Eye, used: usize, placement: Placement) -> ([i32; 2], [u32; 2]) {
     let frustum = &pair.frusta[eye.index()];
     let height = WIDTH * used as f32 / SIZE[0] as f32;
     let x = -eye.side() * pair.ipd() / 2.0 / DISTANCE - WIDTH / 2.0;
@@ -227,7 +227,7 @@ fn place(pair: &EyePair, eye: Eye, used: usize, placement: Placement) -> ([u32; 
     let per_tangent = [pair.size[0] as f32 / frustum.width(), pair.size[1] as f32 / frustum.height()];
     let corner = [(x - frustum.left) * per_tangent[0], (y - frustum.bottom) * per_tangent[1]];
     let size = [WIDTH * per_tangent[0], height * per_tangent[1]];
-    (corner.map(|n| n.round() as u32), size.map(|n| n.round().max(1.0) as u32))
+    (corner.map(|n| n.round() as i32), size.map(|n| n.round().max(1.0) as u32))
 }
 
 #[cfg(test)]
@@ -267,6 +267,6 @@ mod tests {
         assert_eq!(left.1, right.1);
         let disparity = left.0[0] as f32 - right.0[0] as f32;
         assert!((disparity - 0.06 / DISTANCE * pair.focal_length_pixels()).abs() <= 1.0);
-        assert!(left.0[1] + left.1[1] < 500, "below the horizon");
+        assert!(left.0[1] + (left.1[1] as i32) < 500, "below the horizon");
     }
 }

@@ -222,6 +222,14 @@ impl Settings {
                 level.name()
             )));
         }
+        if (self.pipeline, self.holes) == (Pipeline::Paper, HoleMethod::Rendered)
+            && self.method.first() == Method::Synthesized
+        {
+            let reason = "the paper's pipeline fills its holes";
+            return Some(SettingsError::Unusable(format!(
+                "pipeline=paper and holes=rendered do not go together, since {reason}: leave one of them out"
+            )));
+        }
         let writes_motion = [Method::Synthesized, Method::Conventional].contains(&self.method.first());
         (self.frame_rate != FrameRate::Full && !writes_motion).then(|| {
             let reason = "do not go together, since only yoro and conventional write motion vectors";
@@ -399,6 +407,7 @@ mod tests {
             );
         };
         refused("foveation=medium", "timewarp=position");
+        refused("pipeline=paper", "holes=rendered");
         let without =
             Method::ALL.into_iter().filter(|m| ![Method::Synthesized, Method::Conventional].contains(m));
         for method in without {

@@ -157,7 +157,7 @@ impl OverlayPass {
         if self.target == OverlayTarget::Image { 1 } else { self.samples }
     }
 
-    /// Returns the depth of the eye that was finished last, if somebody reads it.
+    /// Returns the image of depth, which is that of the eye finished last if that eye's depth is kept.
     pub(super) fn depth(&self) -> Option<DepthImage<'_>> {
         let convention = DepthConvention::Reversed;
         let image = |texture| DepthImage { texture, origin: [0, 0], layer: None, is_pair: false, convention };
@@ -175,7 +175,12 @@ impl OverlayPass {
             None => depth.insert(Texture::new(&self.gl, size, self.depth, Filter::Nearest)?),
         };
         // SAFETY: the caller's texture, by the contract of `EyeTarget`.
-        Ok(unsafe { tile.fit(&[color], depth) }.is_ok())
+        let fits = unsafe { tile.fit(&[color], depth) }.is_ok();
+        if !fits {
+            // The driver need not be asked again.
+            self.tile = None;
+        }
+        Ok(fits)
     }
 
     /// Draws over the eye that was written to the place that [`OverlayPass::begin`] returned, and completes its target.

@@ -1,5 +1,6 @@
 //! The moving parts of a scene, on the GPU.
 
+use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use super::cluster::{Batch, Cluster, VERTEX_ATTRIBUTES};
@@ -18,7 +19,9 @@ pub struct Moving {
     seconds: f64,
     /// The vertices before the last [`Moving::set_time`].
     previous: Vec<Vertex>,
-    jumps: Jumps,
+    jumps: RefCell<Jumps>,
+    /// The times of the last step, until somebody asks what has jumped in it: nobody does without motion vectors.
+    unasked_step: Cell<Option<[f64; 2]>>,
     /// True if the last [`Moving::set_time`] moved the scene on in a short step. After a long one nothing would go on as it
     /// came.
     has_moved: bool,
@@ -69,7 +72,7 @@ impl Moving {
         model.parts = still;
         let moment = motion.start();
         let mesh = Mesh::rewritable(gl, &VERTEX_ATTRIBUTES, &moment.vertices, &indices)?;
-        let (previous, jumps) = (moment.vertices.clone(), Jumps::default());
+        let (previous, jumps) = (moment.vertices.clone(), RefCell::default());
         Ok(Some(Moving {
             motion,
             moment,
@@ -79,6 +82,7 @@ impl Moving {
             seconds: 0.0,
             previous,
             jumps,
+            unasked_step: Cell::new(None),
             has_moved: false,
         }))
     }
@@ -104,6 +108,9 @@ impl Moving {
     /// Binds the mesh, with the positions before the last step of the time, if it was one, at the location after those of
     /// vertices.
     pub fn bind_with_previous(&self) {
+        if let Some(times) = self.unasked_step.take() {
+            self.forget_jumps(times);
+        }
         self.mesh.bind_with_previous(self.has_moved);
     }
 
@@ -123,9 +130,7 @@ impl Moving {
         std::mem::swap(&mut self.moment.vertices, &mut self.previous);
         self.motion.at(seconds, &mut self.moment);
         self.mesh.rewrite(&self.moment.vertices);
-        if self.has_moved {
-            self.forget_jumps([before, seconds]);
-        }
+        self.unasked_step.set(self.has_moved.then_some([before, seconds]));
         for (piece, cluster) in self.pieces.iter().zip(&mut clusters[self.first..]) {
             cluster.bounds = self.moment.bounds[piece.moved];
         }
@@ -133,11 +138,12 @@ impl Moving {
     }
 
     /// Makes the present vertices the previous ones of what has jumped between two times.
-    fn forget_jumps(&mut self, times: [f64; 2]) {
-        self.motion.find_jumps(times, &mut self.jumps);
+    fn forget_jumps(&self, times: [f64; 2]) {
+        let mut jumps = self.jumps.borrow_mut();
+        self.motion.find_jumps(times, &mut jumps);
         let farthest = (HIGHEST_SPEED * (times[1] - times[0]).abs()) as f32;
         let mut first = 0;
-        for (mesh, jumps) in self.motion.meshes.iter().zip(&self.jumps.meshes) {
+        for (mesh, jumps) in self.motion.meshes.iter().zip(&jumps.meshes) {
             let vertices = first..first + mesh.vertices.len();
             first = vertices.end;
             let now = &self.moment.vertices[vertices.clone()];

@@ -412,8 +412,8 @@ impl Cardboard {
                 Some((left, right)) if left.0.inset.is_some() => {
                     let pair = attached.rendered.map(|(_, pair)| pair);
                     // As on headsets, the menu takes the HUD's place.
-                    let is_menu_open = self.viewer.is_menu_open();
-                    let panel = self.viewer.hud()?.filter(|_| !is_menu_open);
+                    let is_menu_shown = self.viewer.menu_place().is_some();
+                    let panel = self.viewer.hud()?.filter(|_| !is_menu_shown);
                     lens.run_levels(&[left, right], panel.as_ref().zip(pair.as_ref()), turn, window);
                 }
                 _ => lens.run(images.wide().images(), turn, window),
