@@ -23,79 +23,79 @@ namespace Yoro
         /// </summary>
         public const int YORO_ERROR_NULL = -1;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know.
+        ///  struct_size is not the size of the structure, or a newer program sets fields that this library does not know.
         /// </summary>
         public const int YORO_ERROR_STRUCT_SIZE = -2;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order.
+        ///  A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order.
         /// </summary>
         public const int YORO_ERROR_VALUE = -3;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match.
+        ///  A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match.
         /// </summary>
         public const int YORO_ERROR_MATRIX = -4;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes.
+        ///  The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes.
         /// </summary>
         public const int YORO_ERROR_EYES_CANTED = -5;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL.
+        ///  The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL.
         /// </summary>
         public const int YORO_ERROR_EYES_OFF_AXIS = -6;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider).
+        ///  The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider).
         /// </summary>
         public const int YORO_ERROR_EYES_IPD = -7;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN.
+        ///  The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN.
         /// </summary>
         public const int YORO_ERROR_EYES_DENSITY = -8;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN.
+        ///  The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN.
         /// </summary>
         public const int YORO_ERROR_EYES_ROWS = -9;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render.
+        ///  An image is wider or higher than the driver, or any driver, can render.
         /// </summary>
         public const int YORO_ERROR_TOO_LARGE = -10;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points.
+        ///  No GL context is current on this thread, or the loader does not return the API's entry points.
         /// </summary>
         public const int YORO_ERROR_NO_CONTEXT = -11;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points. The GL context or the driver is too old, or lacks a feature that was asked for.
+        ///  The GL context or the driver is too old, or lacks a feature that was asked for.
         /// </summary>
         public const int YORO_ERROR_UNSUPPORTED = -12;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points. The GL context or the driver is too old, or lacks a feature that was asked for. A texture, image or framebuffer does not exist, or has the wrong format, type or size.
+        ///  A texture, image or framebuffer does not exist, or has the wrong format, type or size.
         /// </summary>
         public const int YORO_ERROR_FORMAT = -13;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points. The GL context or the driver is too old, or lacks a feature that was asked for. A texture, image or framebuffer does not exist, or has the wrong format, type or size. The driver refused a shader, an object or a command.
+        ///  The driver refused a shader, an object or a command.
         /// </summary>
         public const int YORO_ERROR_DRIVER = -14;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points. The GL context or the driver is too old, or lacks a feature that was asked for. A texture, image or framebuffer does not exist, or has the wrong format, type or size. The driver refused a shader, an object or a command. The YoroContext was created for a different API than the function's.
+        ///  The YoroContext was created for a different API than the function's.
         /// </summary>
         public const int YORO_ERROR_API = -15;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points. The GL context or the driver is too old, or lacks a feature that was asked for. A texture, image or framebuffer does not exist, or has the wrong format, type or size. The driver refused a shader, an object or a command. The YoroContext was created for a different API than the function's. Another thread is inside a function with this YoroContext.
+        ///  Another thread is inside a function with this YoroContext.
         /// </summary>
         public const int YORO_ERROR_BUSY = -16;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points. The GL context or the driver is too old, or lacks a feature that was asked for. A texture, image or framebuffer does not exist, or has the wrong format, type or size. The driver refused a shader, an object or a command. The YoroContext was created for a different API than the function's. Another thread is inside a function with this YoroContext. No memory is left on the host or on the device.
+        ///  No memory is left on the host or on the device.
         /// </summary>
         public const int YORO_ERROR_MEMORY = -17;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points. The GL context or the driver is too old, or lacks a feature that was asked for. A texture, image or framebuffer does not exist, or has the wrong format, type or size. The driver refused a shader, an object or a command. The YoroContext was created for a different API than the function's. Another thread is inside a function with this YoroContext. No memory is left on the host or on the device. The Vulkan device is lost: create both it and the YoroContext again.
+        ///  The Vulkan device is lost: create both it and the YoroContext again.
         /// </summary>
         public const int YORO_ERROR_DEVICE_LOST = -18;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points. The GL context or the driver is too old, or lacks a feature that was asked for. A texture, image or framebuffer does not exist, or has the wrong format, type or size. The driver refused a shader, an object or a command. The YoroContext was created for a different API than the function's. Another thread is inside a function with this YoroContext. No memory is left on the host or on the device. The Vulkan device is lost: create both it and the YoroContext again. The id is not registered with this YoroContext, or was released.
+        ///  The id is not registered with this YoroContext, or was released.
         /// </summary>
         public const int YORO_ERROR_NOT_REGISTERED = -19;
         /// <summary>
-        ///  A pointer that must not be NULL is NULL. struct_size is not the size of the structure, or a newer program sets fields that this library does not know. A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order. A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match. The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes. The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL. The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be synthesized (4095, in images that are wider). The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN. The rows of one eye's image lie between the rows of the other's. Use YORO_EYES_EVEN. An image is wider or higher than the driver, or any driver, can render. No GL context is current on this thread, or the loader does not return the API's entry points. The GL context or the driver is too old, or lacks a feature that was asked for. A texture, image or framebuffer does not exist, or has the wrong format, type or size. The driver refused a shader, an object or a command. The YoroContext was created for a different API than the function's. Another thread is inside a function with this YoroContext. No memory is left on the host or on the device. The Vulkan device is lost: create both it and the YoroContext again. The id is not registered with this YoroContext, or was released. An internal error of the library. Afterwards the YoroContext returns only this error, and can only be destroyed.
+        ///  An internal error of the library. Afterwards the YoroContext returns only this error, and can only be destroyed.
         /// </summary>
         public const int YORO_ERROR_INTERNAL = -20;
         /// <summary>
@@ -171,6 +171,17 @@ namespace Yoro
         ///  Source and target are both sRGB images: sampling decodes them, and writing encodes them.
         /// </summary>
         public const uint YORO_OUTPUT_SRGB = 2;
+        /// <summary>
+        ///  Leaves open what the rendered eye does not show, and silhouettes, for the caller's scene, drawn once more. The call
+        ///  clears depth to the farthest and stencil to 0 in the target's rectangle, and sets stencil to 1 in each pixel that it
+        ///  writes: draw the opaque scene for the other eye where stencil equals 0. Only for YORO_WARP_KIND_EYES.
+        /// </summary>
+        public const uint YORO_OUTPUT_OPEN_STENCIL = 4;
+        /// <summary>
+        ///  The same for materials without stencil: depth is the nearest in each pixel that is written, so that the scene passes
+        ///  the depth test in open ones alone. Not together with YORO_OUTPUT_DEPTH.
+        /// </summary>
+        public const uint YORO_OUTPUT_OPEN_DEPTH = 8;
         /// <summary>
         ///  Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Display
         ///  the images with the resulting angles.
@@ -513,8 +524,10 @@ namespace Yoro
         public static extern int yoro_gl_create(YoroGlInfo* info, YoroContext** context);
 
         /// <summary>
-        ///  Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
-        ///  buffers take 16 bytes for each 16 x 8 pixels of the source and of the target.
+        ///  Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add
+        ///  padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose buffers take 16 bytes for
+        ///  each 16 x 8 pixels of the source and of the target. For YORO_WARP_KIND_MOTION, give the `warp` of YoroMotionWarp: both
+        ///  kinds have the same buffers.
         ///
         ///  Call it from any thread. It needs neither a loader nor a GL context.
         ///
@@ -548,6 +561,16 @@ namespace Yoro
         /// </summary>
         [DllImport(__DllName, EntryPoint = "yoro_gl_prepare_pose", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern int yoro_gl_prepare_pose(YoroContext* context, YoroPoseWarp* warp);
+
+        /// <summary>
+        ///  Does what yoro_gl_prepare does, in a context of YORO_WARP_KIND_MOTION.
+        ///
+        ///  @param context The context.
+        ///  @param warp    The warp of a frame of these sizes.
+        ///  @pre The GL context is current.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "yoro_gl_prepare_motion", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern int yoro_gl_prepare_motion(YoroContext* context, YoroMotionWarp* warp);
 
         /// <summary>
         ///  Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it. Call it after the
@@ -1528,7 +1551,7 @@ namespace Yoro
         public uint depth_texture;
         /// <summary>
         ///  The framebuffer to draw into, or 0 for the window's. Its first colour attachment is written, and with
-        ///  YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
+        ///  YORO_OUTPUT_DEPTH or an OPEN flag its depth attachment, with stencil for YORO_OUTPUT_OPEN_STENCIL. None of the textures above may be attached to it.
         /// </summary>
         public uint framebuffer;
         /// <summary>
