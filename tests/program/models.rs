@@ -112,8 +112,10 @@ fn alpha_is_drawn_as_the_file_says() {
     assert!(output.contains("1 of 1 frames of behind show nothing"), "{output}");
     write(dir.path(), "below", &json!([material("MASK", 0.5, 0.4)]), &[(0, [0., 0., -2.], 1.0)]);
     run(dir.path(), "render below.gltf").refuses(&["below.gltf: nothing of it can be seen", "alpha cutoff"]);
-    // Another scene is not measured first.
-    let bench = "bench half-rate --scene prototype --scene behind.gltf --out results.jsonl";
+    // One viewpoint is no path; another scene is not measured first.
+    let camera = json!([{"position": [0, 0, 1], "target": [0, 0, -2]}]);
+    fs::write(dir.path().join("behind.camera.json"), camera.to_string()).unwrap();
+    let bench = "bench half-rate --quick --scene prototype --scene behind.gltf --out results.jsonl";
     run(dir.path(), bench).refuses(&["behind has no camera path"]);
     assert!(!dir.path().join("results.jsonl").exists());
 }
