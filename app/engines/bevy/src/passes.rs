@@ -205,8 +205,11 @@ fn synthesize_opaque(
     // clear them.
     let color_attachment = color.get_unsampled_color_attachment();
     drop(depth.get_attachment(StoreOp::Store));
-    let options =
-        Options { color_format: color.main_texture_format(), depth_format: Some(CORE_3D_DEPTH_FORMAT), ..Options::default() };
+    let options = Options {
+        color_format: color.main_texture_format(),
+        depth_format: Some(CORE_3D_DEPTH_FORMAT),
+        ..Options::default()
+    };
     let target = Target { color: color_attachment.view, depth: Some(depth.view()), origin: [0, 0] };
     synthesis.record(&options, source_color.main_texture_view(), source_depth, warp, &target);
 }
