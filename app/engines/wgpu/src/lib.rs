@@ -147,9 +147,8 @@ pub struct Options {
     pub color_format: TextureFormat,
     /// Format of the targets' depth, which is written in the source's encoding. `None` for colour only.
     pub depth_format: Option<TextureFormat>,
-    /// What becomes of holes, which only a [`Gather`] can leave open, in targets that are whole textures. Their depth is then
-    /// cleared to the farthest, and stencil to 0 if it is the mark. With [`HoleMark::Depth`](yoro::synthesis::HoleMark::Depth), depth is the
-    /// mark and nothing else.
+    /// What becomes of holes, which only a [`Gather`] can leave open, and only in targets that are whole textures. With
+    /// [`HoleMark::Depth`](yoro::synthesis::HoleMark::Depth), the depth format is that of the mark, and depth is no output.
     pub holes: Holes,
 }
 

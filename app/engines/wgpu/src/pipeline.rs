@@ -53,7 +53,8 @@ impl<W: WarpKind> Pipeline<W> {
     /// Creates the pipelines, which do not depend on the textures.
     ///
     /// # Errors
-    /// [`WgpuError::Format`] if the device does not support the options, [`WgpuError::Holes`], and [`WgpuError::Refused`] for any other error
+    /// [`WgpuError::Format`] if the device does not support the options, [`WgpuError::Holes`] if these holes cannot be left
+    /// open, and [`WgpuError::Refused`] for any other error
     /// of wgpu. In a browser such errors go to the device's handler of uncaptured errors instead.
     pub fn new(device: &Device, options: &Options) -> Result<Pipeline<W>, WgpuError> {
         let checks = Checks::new(device, options)?;

@@ -32,8 +32,7 @@ pub use yoro_gl::{Capabilities, Context, Destination, GlApi, GlError, PassTime, 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outputs {
     /// Writes the synthesized eye's depth, in the source's encoding, to the target's depth attachment, for transparent
-    /// objects and compositors. Where a tile has a law it is the law's, to a sixteenth of a pixel of
-    /// displacement.
+    /// objects and compositors. Where a tile has a law it is the law's, to a sixteenth of a pixel of displacement.
     pub depth: bool,
     /// Writes the source map to colour attachment 1 ([`yoro_gl::Format::R32Ui`]). Bit 31 marks a hole; the other bits
     /// are the source column of the pixel, or of the edge that it was filled from, in 1/65536 pixel. Columns are

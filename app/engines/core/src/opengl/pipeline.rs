@@ -65,8 +65,7 @@ pub type Motion = Pipeline<MotionWarp>;
 /// | alpha test, polygon stipple (compatibility profile) | off | off |
 ///
 /// Not touched: buffers bound to any target (vertex, uniform, storage, pixel pack and unpack), pixel store, blend
-/// function and equation, clear values, other texture targets and units. A pending error
-/// stays, except in browsers, where allocating buffers reads GL's error flag. A program that the host deleted while it
+/// function and equation, clear values, other texture targets and units. A pending error stays, except in browsers, where allocating buffers reads GL's error flag. A program that the host deleted while it
 /// was current is destroyed, as GL specifies, when another one becomes current; `Preserve` then leaves no program
 /// current.
 ///

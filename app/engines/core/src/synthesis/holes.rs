@@ -6,12 +6,13 @@ pub enum Holes {
     /// Holes are filled from their background, and silhouettes are blended over what lies behind them.
     #[default]
     Filled,
-    /// Whole pixels are left open for the host, which draws its opaque scene there: holes, pixels in which a silhouette is
-    /// blended over what lies behind it, and those whose colour is a silhouette's outermost pixel, in which the source shows
-    /// something of its background, too. They are about 1 to 5 % of an eye.
+    /// Whole pixels are left open for the host to draw its opaque scene in: holes, pixels in which a silhouette is blended
+    /// over what lies behind it, and pixels that show a surface's outermost column, whose colour in the source is partly that
+    /// of the background. They are about 1 to 5 % of an eye.
     ///
-    /// The target has a depth attachment, and for [`HoleMark::Stencil`] stencil. In its rectangle a call clears depth to the
-    /// farthest, and stencil to 0 if that is the mark, and then marks all pixels that it writes. Colour and source map of open pixels are undefined.
+    /// The target needs a depth attachment, and a stencil attachment for [`HoleMark::Stencil`]. In the target's rectangle, a
+    /// call clears depth to the far plane, and stencil to 0 if that is the mark, and then marks each pixel that it writes. The
+    /// colour and the source map of open pixels are undefined.
     Open(HoleMark),
 }
 
@@ -22,13 +23,13 @@ impl Holes {
     }
 }
 
-/// How pixels that are written are told from those that are left open.
+/// How written pixels are distinguished from open ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoleMark {
-    /// By stencil, which is 1 where a pixel is written. The host draws its scene where stencil equals 0. With depth among the
-    /// outputs, what it draws afterwards is hidden by all of the eye.
+    /// Stencil is 1 where a pixel is written: the host draws its scene where it equals 0. If depth is an output, the eye
+    /// occludes what is drawn later.
     Stencil,
-    /// By depth, for hosts whose materials cannot have a stencil state: it is the nearest where a pixel is written, so that the
-    /// host's scene passes the depth test in open pixels alone. It excludes depth among the outputs.
+    /// Depth is that of the near plane where a pixel is written, so that the host's scene passes the depth test in open pixels
+    /// only. This is for hosts whose materials cannot have a stencil state, and excludes depth as an output.
     Depth,
 }

@@ -174,9 +174,8 @@ pub struct Options {
     pub color_format: vk::Format,
     /// Format of the targets' depth, which is written in the source's encoding; `None` for colour only.
     pub depth_format: Option<vk::Format>,
-    /// What becomes of holes, which only a [`Gather`] can leave open. The depth attachment is then cleared to the farthest, in
-    /// the target's rectangle, and stencil to 0 if it is the mark. With [`HoleMark::Depth`](crate::synthesis::HoleMark::Depth), depth is
-    /// the mark and nothing else.
+    /// What becomes of holes, which only a [`Gather`] can leave open. With
+    /// [`HoleMark::Depth`](crate::synthesis::HoleMark::Depth), the depth format is that of the mark, and depth is no output.
     pub holes: Holes,
     /// The largest size of a source in pixels. Smaller sources need no new pipelines or buffers. The source's size
     /// follows from the eyes' distance and frusta: take it from a pair with the largest distance, and add a margin.
