@@ -11,8 +11,7 @@ use wgpu::{
     StencilOperation, StencilState, StoreOp, TextureFormat, TextureSampleType, TextureView,
     TextureViewDimension, VertexState,
 };
-use yoro::eyes::DepthConvention;
-use yoro::synthesis::backend::WarpKind;
+use yoro::synthesis::backend::{HoleMarks, WHOLE_DEPTH, WarpKind};
 use yoro::synthesis::{HoleMark, Holes, LevelUniforms};
 
 use crate::buffers::{Buffers, MAP};
@@ -145,37 +144,8 @@ pub(crate) struct Drawn<'a> {
     /// True if the area is the whole texture, so that nothing in it needs to be kept.
     pub(crate) whole: bool,
     /// How written pixels are marked, if holes are left open.
-    pub(crate) marks: Option<Marks>,
+    pub(crate) marks: Option<HoleMarks>,
 }
-
-/// How a pass marks the pixels that it writes.
-#[derive(Clone, Copy)]
-pub(crate) struct Marks {
-    mark: HoleMark,
-    /// Depths of the near plane and of the far plane.
-    planes: [f32; 2],
-}
-
-impl Marks {
-    /// Returns the marks of these options; `None` if holes are filled.
-    pub(crate) fn new(options: &Options, convention: DepthConvention) -> Option<Marks> {
-        match options.holes {
-            Holes::Filled => None,
-            Holes::Open(mark) => Some(Marks { mark, planes: convention.planes() }),
-        }
-    }
-
-    /// Returns the range of depth that the viewport maps to.
-    fn depths(self) -> [f32; 2] {
-        match self.mark {
-            HoleMark::Stencil => WHOLE_DEPTH,
-            HoleMark::Depth => [self.planes[0]; 2],
-        }
-    }
-}
-
-/// The viewport's depths, unless depth is a mark.
-const WHOLE_DEPTH: [f32; 2] = [0.0, 1.0];
 
 /// Returns the stencil state that writes the reference in each pixel, if stencil marks what is written.
 fn stencil_state(options: &Options) -> StencilState {
@@ -205,7 +175,7 @@ impl Passes {
         self.spans.record(encoder, &groups.spans, uniforms, spans, None, (all(span_size), WHOLE_DEPTH));
         let target_color = color(target.color, target.whole);
         let depth = target.depth.map(|view| depth(view, target.whole, target.marks));
-        let area = (target.area, target.marks.map_or(WHOLE_DEPTH, Marks::depths));
+        let area = (target.area, target.marks.map_or(WHOLE_DEPTH, HoleMarks::depths));
         self.march.record(encoder, &groups.march, uniforms, target_color, depth, area);
     }
 }
@@ -222,7 +192,7 @@ fn color(view: &TextureView, overwritten: bool) -> RenderPassColorAttachment<'_>
 fn depth(
     view: &TextureView,
     overwritten: bool,
-    marks: Option<Marks>,
+    marks: Option<HoleMarks>,
 ) -> RenderPassDepthStencilAttachment<'_> {
     let farthest = marks.map_or(0.0, |marks| marks.planes[1]);
     let load = if overwritten { LoadOp::Clear(farthest) } else { LoadOp::Load };

@@ -6,7 +6,7 @@ use yoro::synthesis::backend::{Places, WarpKind, map_sizes};
 
 use crate::buffers::Buffers;
 use crate::checks::{Checks, made, size};
-use crate::passes::{Drawn, Groups, Marks, Passes};
+use crate::passes::{Drawn, Groups, Passes};
 use crate::shaders::Shaders;
 use crate::uniforms::UniformRing;
 use crate::{Options, Source, Target, WgpuError};
@@ -122,7 +122,7 @@ impl<W: WarpKind> Pipeline<W> {
             depth: target.depth,
             area: [x, y, width, height],
             whole: size(target.color) == target_size,
-            marks: warp.open_depth().and_then(|convention| Marks::new(&self.checks.options, convention)),
+            marks: warp.marks(self.checks.options.holes),
         };
         let sizes = map_sizes::<W>([source_size, target_size]);
         self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, uniforms, &drawn);

@@ -16,8 +16,7 @@ mod composer;
 mod guessed_depth;
 mod pipeline;
 
-use crate::eyes::DepthConvention;
-use crate::synthesis::backend::{Places, WarpKind, map_sizes};
+use crate::synthesis::backend::{HoleMarks, Places, WarpKind, map_sizes};
 use crate::synthesis::{HoleMark, Holes, Uniforms};
 use yoro_gl::{Format, Image, Program};
 
@@ -206,16 +205,10 @@ pub fn draw_target(gl: &Context, target: &Destination, outputs: Outputs) {
     gl.set_depth_write(false);
 }
 
-/// Like [`draw_target`], for a march that leaves pixels open: marks those that it writes. `convention` is that of depth.
-fn draw_open(
-    gl: &Context,
-    target: &Destination,
-    outputs: Outputs,
-    mark: HoleMark,
-    convention: DepthConvention,
-) {
+/// Like [`draw_target`], for a march that leaves pixels open: marks those that it writes.
+fn draw_open(gl: &Context, target: &Destination, outputs: Outputs, HoleMarks { mark, planes }: HoleMarks) {
     gl.overwrite(target, outputs.draw_buffers() as usize, false);
-    let [nearest, farthest] = convention.planes();
+    let [nearest, farthest] = planes;
     gl.clear_marks(target, farthest, mark == HoleMark::Stencil);
     gl.set_depth_write(outputs.depth || mark == HoleMark::Depth);
     match mark {

@@ -259,11 +259,9 @@ impl<W: WarpKind> Pipeline<W> {
             if let Some(Bloom { texture, strength }) = bloom {
                 self.march.texture("bloom", 4, texture).set("bloom_strength", strength);
             }
-            match (self.outputs.holes, warp.open_depth()) {
-                (Holes::Open(mark), Some(convention)) => {
-                    draw_open(gl, target, self.outputs, mark, convention)
-                }
-                _ => draw_target(gl, target, self.outputs),
+            match warp.marks(self.outputs.holes) {
+                Some(marks) => draw_open(gl, target, self.outputs, marks),
+                None => draw_target(gl, target, self.outputs),
             }
         });
         gl.end_synthesis();

@@ -6,7 +6,30 @@ use bytemuck::Pod;
 use super::error::ArgumentError;
 pub use super::error::{check_rectangle, check_size};
 use super::uniforms::{PoseUniforms, TILE, Uniforms};
-use crate::eyes::{DepthConvention, MotionWarp, PoseWarp, Warp};
+use super::{HoleMark, Holes};
+use crate::eyes::{MotionWarp, PoseWarp, Warp};
+
+/// The range of depth that a viewport maps to, unless depth marks what is written.
+pub const WHOLE_DEPTH: [f32; 2] = [0.0, 1.0];
+
+/// How the last pass marks the pixels that it writes, if holes are left open.
+#[derive(Clone, Copy, Debug)]
+pub struct HoleMarks {
+    /// The attachment that is the mark.
+    pub mark: HoleMark,
+    /// The stored depths of the near plane and of the far plane. Depth is cleared to the latter.
+    pub planes: [f32; 2],
+}
+
+impl HoleMarks {
+    /// Returns the range of depth that the viewport maps to.
+    pub fn depths(self) -> [f32; 2] {
+        match self.mark {
+            HoleMark::Stencil => WHOLE_DEPTH,
+            HoleMark::Depth => [self.planes[0]; 2],
+        }
+    }
+}
 
 /// The places of source and target in their images.
 #[derive(Clone, Copy, Debug)]
@@ -71,8 +94,8 @@ pub trait WarpKind: Copy {
         Ok(())
     }
 
-    /// Returns the convention of depth, for kinds that can leave holes open.
-    fn open_depth(&self) -> Option<DepthConvention> {
+    /// Returns how pixels are marked whose holes are left open; `None` for [`Holes::Filled`], and for kinds that fill them.
+    fn marks(&self, _holes: Holes) -> Option<HoleMarks> {
         None
     }
 
@@ -93,8 +116,11 @@ impl WarpKind for Warp {
         &values.gather
     }
 
-    fn open_depth(&self) -> Option<DepthConvention> {
-        Some(self.convention)
+    fn marks(&self, holes: Holes) -> Option<HoleMarks> {
+        match holes {
+            Holes::Filled => None,
+            Holes::Open(mark) => Some(HoleMarks { mark, planes: self.convention.planes() }),
+        }
     }
 
     fn sizes(&self) -> [[u32; 2]; 2] {

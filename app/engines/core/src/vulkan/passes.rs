@@ -9,10 +9,10 @@ use super::commands::Commands;
 use super::objects::Objects;
 use super::pipelines::{PipelineFactory, Pipelines};
 use super::shaders::Shaders;
-use super::targets::{Attachments, Intermediate, Marks, PassKind, Rendering};
+use super::targets::{Attachments, Intermediate, PassKind, Rendering};
 use super::timer::{Stamp, Timer};
 use super::{ImageState, Options, VulkanError};
-use crate::synthesis::backend::{WarpKind, map_sizes};
+use crate::synthesis::backend::{HoleMarks, WarpKind, map_sizes};
 
 /// All passes.
 pub(super) struct Passes {
@@ -127,7 +127,7 @@ impl MarchPass {
         recorder: &Recorder,
         target: &Attachments,
         area: vk::Rect2D,
-        marks: Option<Marks>,
+        marks: Option<HoleMarks>,
     ) {
         recorder.commands.group(c"yoro march", || {
             let pipeline = self.pipelines.get(recorder.part);

@@ -13,14 +13,13 @@ use super::images::{self, Source, Target};
 use super::objects::Objects;
 use super::passes::{Passes, Recorder, area};
 use super::pipelines::{FILTERED, Layouts};
-use super::targets::{Marks, Rendering};
+use super::targets::Rendering;
 use super::timer::{Stamp, Timer};
 use super::{
     Frame, Host, ImageState, Options, PassTimes, SourceId, SourceImages, TargetId, TargetImages, Uses,
     VulkanError,
 };
 use crate::eyes::{MotionWarp, PoseWarp, Warp};
-use crate::synthesis::Holes;
 use crate::synthesis::backend::{Places, WarpKind, check_rectangle, check_size, map_sizes};
 
 /// Synthesis between parallel eyes: the march goes along the source's row.
@@ -242,10 +241,7 @@ impl<W: WarpKind> Pipeline<W> {
         recorder.stamp(Stamp::Tiles);
         passes.spans.record(&recorder, span_size);
         recorder.stamp(Stamp::Spans);
-        let marks = match (self.options.holes, warp.open_depth()) {
-            (Holes::Open(mark), Some(convention)) => Some(Marks { mark, planes: convention.planes() }),
-            _ => None,
-        };
+        let marks = warp.marks(self.options.holes);
         let area = area(frame.target_origin, target_size);
         passes.march.record(&recorder, &target.attachments, area, marks);
         recorder.stamp(Stamp::March);

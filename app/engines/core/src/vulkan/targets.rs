@@ -6,6 +6,7 @@ use super::commands::{Commands, has_command};
 use super::formats;
 use super::objects::Objects;
 use super::{Host, ImageState, Options, VulkanError};
+use crate::synthesis::backend::{HoleMarks, WHOLE_DEPTH};
 use crate::synthesis::{HoleMark, Holes};
 
 /// The kinds of attachments that passes draw into.
@@ -53,32 +54,11 @@ pub(super) struct Attachments {
     framebuffer: vk::Framebuffer,
 }
 
-/// How a pass marks the pixels that it writes, in an area that is cleared.
-#[derive(Clone, Copy)]
-pub(super) struct Marks {
-    pub(super) mark: HoleMark,
-    /// Depths of the near plane and of the far plane.
-    pub(super) planes: [f32; 2],
+/// Returns the values that the attachments are cleared to. That of colour is not used.
+fn clear_values(marks: HoleMarks) -> [vk::ClearValue; 2] {
+    let depth_stencil = vk::ClearDepthStencilValue { depth: marks.planes[1], stencil: 0 };
+    [vk::ClearValue::default(), vk::ClearValue { depth_stencil }]
 }
-
-impl Marks {
-    /// Returns the values that the attachments are cleared to. That of colour is not used.
-    fn clear_values(self) -> [vk::ClearValue; 2] {
-        let depth_stencil = vk::ClearDepthStencilValue { depth: self.planes[1], stencil: 0 };
-        [vk::ClearValue::default(), vk::ClearValue { depth_stencil }]
-    }
-
-    /// Returns the range of depth that the viewport maps to.
-    fn depths(self) -> [f32; 2] {
-        match self.mark {
-            HoleMark::Stencil => WHOLE_DEPTH,
-            HoleMark::Depth => [self.planes[0]; 2],
-        }
-    }
-}
-
-/// The viewport's depths, unless depth is a mark.
-const WHOLE_DEPTH: [f32; 2] = [0.0, 1.0];
 
 /// The result of a pass that later passes read.
 pub(super) struct Intermediate {
@@ -165,10 +145,10 @@ impl Rendering {
         attachments: &Attachments,
         pipeline: vk::Pipeline,
         area: vk::Rect2D,
-        marks: Option<Marks>,
+        marks: Option<HoleMarks>,
     ) {
-        let depths = marks.map_or(WHOLE_DEPTH, Marks::depths);
-        let clear = marks.map(Marks::clear_values);
+        let depths = marks.map_or(WHOLE_DEPTH, HoleMarks::depths);
+        let clear = marks.map(clear_values);
         // SAFETY: `Commands::new` asks for a buffer that records outside of render passes, and for live handles. What
         // begins here ends here. A pass that clears has clear values.
         unsafe {
@@ -202,7 +182,7 @@ impl Attachments {
         begin: vk::PFN_vkCmdBeginRendering,
         buffer: vk::CommandBuffer,
         area: vk::Rect2D,
-        marks: Option<Marks>,
+        marks: Option<HoleMarks>,
     ) {
         let attachment = |view, state: ImageState| {
             vk::RenderingAttachmentInfo::default()
@@ -213,7 +193,7 @@ impl Attachments {
         };
         let colors = [attachment(self.color, ImageState::COLOR_ATTACHMENT)];
         let mut depth = attachment(self.depth.unwrap_or_default(), ImageState::DEPTH_ATTACHMENT);
-        if let Some([_, clear]) = marks.map(Marks::clear_values) {
+        if let Some([_, clear]) = marks.map(clear_values) {
             depth = depth.load_op(vk::AttachmentLoadOp::CLEAR).clear_value(clear);
         }
         let info = vk::RenderingInfo::default()
