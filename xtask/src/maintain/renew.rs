@@ -12,7 +12,7 @@ struct Generated {
     variable: &'static str,
 }
 
-const GENERATED: [Generated; 3] = [
+const GENERATED: [Generated; 4] = [
     Generated {
         what: "what is made of the synthesis shaders",
         test: &[
@@ -35,6 +35,11 @@ const GENERATED: [Generated; 3] = [
     Generated {
         what: "the table in docs/settings.md",
         test: &["--package", "yoro-settings", "the_document_has_the_table"],
+        variable: "YORO_BLESS",
+    },
+    Generated {
+        what: "the tables of what works where",
+        test: &["--package", "yoro-tests", "--test", "features"],
         variable: "YORO_BLESS",
     },
 ];
