@@ -118,7 +118,7 @@ fn the_files_of_all_shards_are_one_run() {
 fn sweeps_have_their_points_and_baselines() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    let line = "bench ipd styles flicker imbuffer patchers --quick --scene prototype --size 96x96 --rounds 1 --out all.jsonl \
+    let line = "bench ipd styles flicker patchers --quick --scene prototype --size 96x96 --rounds 1 --out all.jsonl \
                 --contender yoro-gather --contender yoro-paper --contender patcher-gather --contender patcher-median";
     succeed(at, line);
     let records = records(&at.join("all.jsonl"));
@@ -130,7 +130,6 @@ fn sweeps_have_their_points_and_baselines() {
     };
     assert_eq!(points("ipd", "point"), ["500", "630", "750"]);
     assert_eq!(points("styles", "label"), ["realistic", "cartoon", "low-poly", "voxel", "anime"]);
-    assert_eq!(points("imbuffer", "point"), ["10", "20", "40", "80", "160"]);
 
     // A larger distance between the eyes makes the same image worse. Nothing is timed if only quality is requested.
     let ipd = of_suite("ipd");
@@ -200,12 +199,11 @@ fn the_other_experiments_are_measured_and_reported() {
 }
 
 #[test]
-fn scenes_beyond_the_bounds_are_left_out_with_the_reason() {
+fn the_scenes_of_complexity_grow_in_even_steps() {
     let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
-    let line = "bench complexity --quick --size 64x64 --rounds 1 --contender mono --max-triangles 400000 --max-memory-mib 25 --out c.jsonl";
-    let said = succeed(at, line).stdout;
-    let records = records(&at.join("c.jsonl"));
+    let line = "bench complexity --quick --size 64x64 --rounds 1 --contender mono --max-triangles 400000 --out c.jsonl";
+    succeed(dir.path(), line);
+    let records = records(&dir.path().join("c.jsonl"));
     let mut triangles: Vec<f64> =
         of_kind(&records, "round").iter().map(|r| r["point"].as_f64().unwrap()).collect();
     assert_eq!(triangles.len(), 5);
@@ -214,10 +212,6 @@ fn scenes_beyond_the_bounds_are_left_out_with_the_reason() {
         triangles.windows(2).all(|w| (w[1] - w[0] - triangles[1] + 2.0).abs() < 1.0),
         "uneven steps: {triangles:?}"
     );
-    let left_out = of_kind(&records, "unsupported");
-    assert!(!left_out.is_empty() && !of_kind(&records, "measurement").is_empty(), "{records:?}");
-    assert!(left_out.iter().all(|r| r["reason"].as_str().unwrap().contains("MiB are allowed")));
-    assert!(said.contains("not measured: "), "{said}");
 }
 
 #[test]

@@ -89,11 +89,7 @@ fn a_saved_log_is_a_table_and_a_capture() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     let said = succeed(at, &format!("device logcat {RECORDED} --out kept")).stdout;
-    assert!(
-        said.contains("SIMULATED: ") && said.contains("yoro in prototype") && said.contains("60.0/60"),
-        "{said}"
-    );
-    assert!(said.contains("12 samples, 0 damaged lines"), "{said}");
+    assert!(said.contains("SIMULATED: yoro in prototype: 12 samples, 0 damaged lines"), "{said}");
     let kept = read(&at.join("kept"));
     assert!(kept.info.device.simulated && kept.info.method == "yoro" && kept.samples.len() == 12);
     assert_eq!(fs::read(at.join("kept/log.txt")).unwrap(), fs::read(RECORDED).unwrap());
@@ -120,7 +116,7 @@ fn a_saved_log_is_a_table_and_a_capture() {
     assert_eq!(damaged.samples[11].other["gaze"], "0.25");
     assert_eq!(damaged.samples.len(), 12);
     write(at, "none.log", "--------- beginning of main\n");
-    crate::program::run(at, "device logcat none.log").refuses(&["none.log", "YORO and VrApi"]);
+    crate::program::run(at, "device logcat none.log").refuses(&["none.log", "the tag YORO"]);
 }
 
 /// A shell script that answers like the program adb.
@@ -202,7 +198,8 @@ fn adb_is_called_with_the_right_arguments() {
         list.contains("Fake phone") && list.contains("unauthorized") && !list.contains("imulated"),
         "{list}"
     );
-    run(at, "device run --adb adb --serial FAKE2").refuses(&["FAKE2 does not trust"]);
+    run(at, "device run --adb adb --serial FAKE2")
+        .refuses(&["FAKE2 is not reached by adb (unauthorized)", "key"]);
     write(at, "a.apk", "");
     succeed(at, "device install --adb adb --apk a.apk");
     // Output of adb from issues of other projects: sndcpy 64, HyperSploit 54.
@@ -321,36 +318,10 @@ fn a_missing_adb_server_is_not_reported_as_a_missing_device() {
     ]);
     fake_adb(at, "echo 'List of devices attached'; echo; echo '* daemon started successfully' >&2\n");
     run(at, "device list --adb adb").refuses(&["no device is connected"]);
-}
-
-#[cfg(unix)]
-#[test]
-fn a_phone_by_cable_and_by_wifi_is_one_phone() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
-    let fake = |serials: &[&str], own: &str| {
-        let lines: String = serials.iter().map(|serial| format!("{serial}\\tdevice\\n")).collect();
-        fake_adb(
-            at,
-            &format!(
-                "if [ \"$1\" = devices ]; then printf 'List of devices attached\\n{lines}\\n'; exit; fi\ncase \"$*\" in *ro.serialno*) echo {own} ;; *install*) echo \"$2\" >> installed; echo Success ;; esac\n"
-            ),
-        );
-        let _ = fs::remove_file(at.join("installed"));
-    };
-    write(at, "a.apk", "");
-    let installed = || fs::read_to_string(at.join("installed")).unwrap().lines().count();
-    // scrcpy issue 5967, ws-scrcpy-web pull request 532.
-    let wireless = "adb-5C061JEA327610-bo0E0q (2)._adb-tls-connect._tcp";
-    fake(&["5C061JEA327610", wireless, "192.168.86.190:37571"], "5C061JEA327610");
-    let said = succeed(at, "device install --apk a.apk --all --adb adb");
-    assert_eq!(installed(), 1, "{}", said.stdout);
-    assert!(said.stderr.contains("are the same device: 5C061JEA327610 is used"), "{}", said.stderr);
-    // Since they are one device, nothing has to be chosen.
-    succeed(at, "device install --apk a.apk --adb adb");
-    // All emulators of an image have the same serial number (marathon issue 223).
-    fake(&["emulator-5554", "emulator-5556"], "EMULATOR28X0X23X0");
-    succeed(at, "device install --apk a.apk --all --adb adb");
-    assert_eq!(installed(), 2);
-    run(at, "device install --apk a.apk --adb adb").refuses(&["several devices"]);
+    fake_adb(
+        at,
+        "printf 'List of devices attached\\nemulator-5554\\tdevice\\nemulator-5556\\tdevice\\n\\n'\n",
+    );
+    run(at, "device run --adb adb")
+        .refuses(&["several devices are connected (emulator-5554, emulator-5556)"]);
 }

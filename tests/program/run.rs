@@ -8,11 +8,16 @@ use crate::program::{run, succeed};
 #[test]
 fn a_report_of_every_method() {
     let dir = tempfile::tempdir().unwrap();
-    let json = succeed(dir.path(), "run prototype --viewpoints 1 --size 96x96 --json").json();
-    let scene = &json["scenes"][0];
-    assert!(scene.to_string().contains("prototype"), "{json:#}");
-    for method in ["conventional", "gather", "paper"] {
-        assert!(scene.to_string().to_lowercase().contains(method), "{method}: {json:#}");
+    let said = succeed(dir.path(), "run prototype --viewpoints 1 --size 96x96").stdout;
+    for needed in
+        ["the first picture: out/prototype.yoro-paper.png", "conventional", "yoro-gather", "out/report.html"]
+    {
+        assert!(said.contains(needed), "{needed}: {said}");
+    }
+    for contender in ["conventional", "yoro-gather", "yoro-paper"] {
+        let pair =
+            yoro_media::load_color(&dir.path().join(format!("out/prototype.{contender}.png"))).unwrap();
+        assert_eq!(pair.dimensions(), (192, 96), "{contender}");
     }
     let page = fs::read_to_string(dir.path().join("out/report.html")).unwrap();
     assert!(page.contains("data:image/"), "no pictures in the page");

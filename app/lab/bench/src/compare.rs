@@ -1,5 +1,6 @@
 //! `yoro compare`: the similarity of two images, or of the images of two folders.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -55,29 +56,31 @@ pub struct Inputs {
 }
 
 /// An explanation of the figures for readers of the JSON.
-const SETTINGS: Settings = Settings {
-    psnr: "dB, data range 255; null where both images are identical; rgb: the error over all three channels",
-    ssim_gaussian: "gaussian window 11x11, sigma 1.5, population covariance (Wang et al. 2004), mean without a border of 5 pixels; rgb: mean of three channels",
-    ssim_uniform: "uniform window 7x7, sample covariance (scikit-image's default), mean without a border of 3 pixels; rgb: mean of three channels",
-    flip: "LDR-FLIP (Andersson et al. 2020) at 67.02 pixels per degree, mean over the image, 0 (equal) to 1",
-    luma: "ITU-R BT.601, not rounded",
-    mean: "mean over the pairs; identical pairs are left out of the mean PSNR",
-};
-
-#[derive(Debug, Serialize)]
-struct Settings {
-    psnr: &'static str,
-    ssim_gaussian: &'static str,
-    ssim_uniform: &'static str,
-    flip: &'static str,
-    luma: &'static str,
-    mean: &'static str,
-}
+const SETTINGS: [(&str, &str); 6] = [
+    (
+        "psnr",
+        "dB, data range 255; null where both images are identical; rgb: the error over all three channels",
+    ),
+    (
+        "ssim_gaussian",
+        "gaussian window 11x11, sigma 1.5, population covariance (Wang et al. 2004), mean without a border of 5 pixels; rgb: mean of three channels",
+    ),
+    (
+        "ssim_uniform",
+        "uniform window 7x7, sample covariance (scikit-image's default), mean without a border of 3 pixels; rgb: mean of three channels",
+    ),
+    (
+        "flip",
+        "LDR-FLIP (Andersson et al. 2020) at 67.02 pixels per degree, mean over the image, 0 (equal) to 1",
+    ),
+    ("luma", "ITU-R BT.601, not rounded"),
+    ("mean", "mean over the pairs; identical pairs are left out of the mean PSNR"),
+];
 
 /// The results of a comparison.
 #[derive(Debug, Serialize)]
 pub struct CompareReport {
-    settings: &'static Settings,
+    settings: BTreeMap<&'static str, &'static str>,
     /// The pairs, sorted by name.
     pub pairs: Vec<Pair>,
     /// Means over the pairs.
@@ -197,7 +200,7 @@ impl CompareReport {
             flip: pairs.iter().map(|pair| pair.comparison.flip).sum::<f64>() / pairs.len() as f64,
             identical_pairs: pairs.iter().filter(|pair| pair.comparison.identical).count(),
         };
-        Ok(CompareReport { settings: &SETTINGS, pairs, mean, unmatched })
+        Ok(CompareReport { settings: SETTINGS.into(), pairs, mean, unmatched })
     }
 
     /// Returns a table for a terminal.

@@ -72,7 +72,10 @@ pub enum DeviceError {
     #[error("several devices are connected ({}): name one or some of them, or ask for all", .0.join(", "))]
     Several(Vec<String>),
     /// adb does not reach the device.
-    #[error("{serial} {}", unreached(serial, words))]
+    #[error(
+        "{serial} is not reached by adb ({words}): unlock it, accept this computer's key on its screen, plug it in again \
+         (over Wi-Fi adb connect {serial}), and see docs/measuring.md"
+    )]
     Unreached {
         /// The device's serial number, as adb lists it.
         serial: String,
@@ -80,12 +83,10 @@ pub enum DeviceError {
         words: String,
     },
     /// The application is not installed.
-    #[error("{package} is not installed on {serial}: yoro device install installs yoro")]
+    #[error("yoro is not installed on {serial}: yoro device install installs it")]
     NotInstalled {
         /// The device's serial number, as adb lists it.
         serial: String,
-        /// The application's package.
-        package: String,
     },
     /// The installation failed.
     #[error("{} cannot be installed on {serial}: {reason} (docs/measuring.md has the remedies)", apk.display())]
@@ -112,7 +113,7 @@ pub enum DeviceError {
     #[error("{0}")]
     Unfit(String),
     /// A command on the device failed.
-    #[error("{serial} refuses \"{command}\" ({reason}): {}", after_refusal(serial, reason))]
+    #[error("{serial} refuses \"{command}\" ({reason}): docs/measuring.md has the remedies")]
     Refused {
         /// The device's serial number, as adb lists it.
         serial: String,
@@ -136,30 +137,6 @@ impl DeviceError {
     /// True if the device may come back without help.
     pub fn is_lost(&self) -> bool {
         matches!(self, DeviceError::Unreached { .. } | DeviceError::Server(_))
-    }
-}
-
-/// Returns what is wrong with a device that adb does not reach, and the remedy.
-fn unreached(serial: &str, words: &str) -> String {
-    let serial = quoted(serial);
-    match words {
-        "unauthorized" | "authorizing" => {
-            "does not trust this computer yet: unlock it and accept the key that it shows".into()
-        }
-        "offline" | "connecting" => {
-            format!(
-                "is offline: plug it in again, or connect anew (adb reconnect offline, over Wi-Fi adb connect {serial})"
-            )
-        }
-        "no permissions" => {
-            "may not be opened by this user: install the udev rules for Android (Debian and Ubuntu: apt \
-                             install android-sdk-platform-tools-common), then plug it in again"
-                .into()
-        }
-        words => format!(
-            "is not reached by adb ({words}): connect it, unlock it, and give the same command; yoro device list shows \
-             which devices are there, and adb kill-server ends a server that hangs"
-        ),
     }
 }
 
@@ -189,16 +166,6 @@ pub fn quoted(word: &str) -> String {
     } else {
         format!("'{}'", word.replace('\'', "'\\''"))
     }
-}
-
-/// Returns the remedy for a refusal.
-fn after_refusal(serial: &str, reason: &str) -> String {
-    if reason.contains("SecurityException") {
-        return "on phones by Xiaomi turn on \"USB debugging (Security settings)\" in the developer options and restart \
-                the phone"
-            .into();
-    }
-    format!("try it by adb -s {} shell", quoted(serial))
 }
 
 /// Returns the seconds since 1970 by this computer's clock. It never jumps.
@@ -302,35 +269,35 @@ impl Adb {
         Device { adb: self.clone(), serial: serial.into() }
     }
 
-    /// Returns the chosen devices: those with the given serial numbers, all of them, or the only one. If a device is
-    /// connected both by cable and by Wi-Fi, the connection that adb lists first is used.
+    /// Returns the chosen devices: those with the given serial numbers, all of them, or the only one that is ready.
     ///
-    /// # Errors [`DeviceError`] if there is no device, several without a choice, an unknown serial number, or one that
-    /// is not ready.
+    /// # Errors
+    /// [`DeviceError`] if there is no device, several without a choice, an unknown serial number, or one that is not
+    /// ready.
     pub fn choose(&self, serials: &[String], all: bool) -> Result<Vec<Device>, DeviceError> {
         let listed = self.devices()?;
         if listed.is_empty() && serials.is_empty() {
             return Err(DeviceError::NoDevice);
         }
-        if !serials.is_empty() || all || listed.len() == 1 {
-            let state = |serial: &String| {
-                let found = listed.iter().find(|device| device.serial == *serial);
-                found.map_or("it is not connected", |device| &device.state)
-            };
-            let every: Vec<String> = listed.iter().map(|device| device.serial.clone()).collect();
-            let chosen = if serials.is_empty() { &every } else { serials };
-            let open = |serial: &String| match state(serial) {
+        // Devices that cannot be used do not make the choice ambiguous.
+        let mut chosen = serials.to_vec();
+        chosen.sort();
+        chosen.dedup();
+        if serials.is_empty() {
+            let is_chosen = |device: &&Listed| all || listed.len() == 1 || device.is_ready();
+            chosen = listed.iter().filter(is_chosen).map(|device| device.serial.clone()).collect();
+            if !all && chosen.len() != 1 {
+                return Err(DeviceError::Several(listed.into_iter().map(|device| device.serial).collect()));
+            }
+        }
+        let open = |serial: &String| {
+            let found = listed.iter().find(|device| device.serial == *serial);
+            match found.map_or("it is not connected", |device| &device.state) {
                 "device" => Ok(self.open(serial)),
                 words => Err(DeviceError::Unreached { serial: serial.clone(), words: words.into() }),
-            };
-            return once_each(chosen.iter().map(open).collect::<Result<_, _>>()?);
-        }
-        // Devices that cannot be used do not make the choice ambiguous.
-        let ready = listed.iter().filter(|device| device.is_ready()).map(|device| self.open(&device.serial));
-        match once_each(ready.collect())? {
-            one if one.len() == 1 => Ok(one),
-            _ => Err(DeviceError::Several(listed.into_iter().map(|device| device.serial).collect())),
-        }
+            }
+        };
+        chosen.iter().map(open).collect()
     }
 }
 
@@ -346,25 +313,6 @@ fn listed(text: &str) -> Vec<Listed> {
         Some(Listed { serial: serial.trim().into(), state: state.into() })
     };
     text.lines().filter_map(device).collect()
-}
-
-/// Removes further connections of the same device.
-fn once_each(devices: Vec<Device>) -> Result<Vec<Device>, DeviceError> {
-    if devices.len() < 2 {
-        return Ok(devices);
-    }
-    let mut chosen: Vec<(String, Device)> = Vec::new();
-    for device in devices {
-        let own = device.serial_number()?;
-        match chosen.iter().find(|(known, _)| *known == own) {
-            Some((_, known)) if known.serial == device.serial => {}
-            Some((_, Device { serial: known, .. })) => {
-                ::log::warn!("{known} and {} are the same device: {known} is used", device.serial);
-            }
-            None => chosen.push((own, device)),
-        }
-    }
-    Ok(chosen.into_iter().map(|(_, device)| device).collect())
 }
 
 /// Output of a command of adb.
@@ -634,7 +582,6 @@ mod tests {
         let stderr = "\nException occurred while executing 'put':\njava.lang.SecurityException: Permission denial: writing to settings requires:android.permission.WRITE_SECURE_SETTINGS\n\tat com.android.providers.settings.SettingsProvider.call(SettingsProvider.java:398)\n";
         let reason = failed(stderr).reason();
         assert!(reason.starts_with("java.lang.SecurityException: Permission denial"), "{reason}");
-        assert!(after_refusal("X", &reason).contains("USB debugging (Security settings)"));
         let plain =
             AdbOutput { success: false, stdout: "a\n".into(), stderr: "first\nlast: word\n\n".into() };
         assert_eq!(plain.reason(), "last: word");

@@ -6,16 +6,14 @@
 //! ```
 //!
 //! The inputs are devices, plans of experiments and captures; the outputs are captures and reports. [`adb`] reaches devices
-//! with the program adb, `follow` reads a log across lost connections, [`reading`] parses its lines into samples ([`external_app`] finds the lines of other
-//! applications), [`run`] captures one run, [`experiment`] many, [`farm`] reads what device farms give back, and
-//! [`report`] computes figures from them. [`study`] plans and analyses user studies.
+//! with the program adb, `follow` reads a log across lost connections, [`reading`] parses its lines into samples,
+//! [`run`] captures one run, [`experiment`] many, [`farm`] reads what device farms give back, and [`report`] computes figures from them. [`study`] plans and analyses user studies.
 //!
 //! This crate must not depend on OpenGL, rendering or the command line.
 
 pub mod adb;
 pub mod capture;
 pub mod experiment;
-pub mod external_app;
 pub mod farm;
 mod follow;
 pub mod held_settings;

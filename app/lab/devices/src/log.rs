@@ -68,13 +68,8 @@ pub fn parse(line: &str) -> Kind<'_> {
 
 /// Returns the tag of a line that is a bare message.
 fn raw_tag(line: &str) -> Option<&'static str> {
-    if line.starts_with("v=") || Rating::is_line(line) || Pictures::is_line(line) {
-        Some(LOG_TAG)
-    } else if line.starts_with("FPS=") {
-        Some(VRAPI_TAG)
-    } else {
-        None
-    }
+    let is_own = line.starts_with("v=") || Rating::is_line(line) || Pictures::is_line(line);
+    is_own.then_some(LOG_TAG)
 }
 
 /// Parses `1700000000.123  1234  1250 I YORO    : ...`.
@@ -152,7 +147,6 @@ mod tests {
             assert_eq!(of(line), expected, "{line}");
         }
         assert_eq!(of("v=2,t=1.0s"), (None, "YORO", "v=2,t=1.0s"));
-        assert_eq!(of("FPS=72/72,Prd=38ms").1, "VrApi");
         assert_eq!(of("11-14 22:13:20.123  1  2 E AndroidRuntime: FATAL: a (b): c").2, "FATAL: a (b): c");
         assert_eq!(of("11-14 22:13:20.123  1  2 E libc:").2, "");
     }

@@ -12,11 +12,6 @@ const ACTIVITY: &str = "io.github.yoro/android.app.NativeActivity";
 /// Size of the log buffer, which must hold the lines of a lost connection. Android resets it on a restart.
 const LOG_BUFFER: &str = "8M";
 
-/// The kernel's file about the battery. Not every shell may read it.
-const KERNEL_BATTERY: &str = "/sys/class/power_supply/battery/uevent";
-/// Minimum voltage that is taken for millivolts. Some phones give whole volts, which are too coarse for power.
-pub(crate) const LEAST_MILLIVOLTS: f64 = 100.0;
-
 /// The battery's state as Android reports it (`dumpsys battery`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Battery {
@@ -30,12 +25,6 @@ pub struct Battery {
     pub status: Option<BatteryStatus>,
     /// True if these values were set by hand and no longer follow the battery (`UPDATES STOPPED`).
     pub held: bool,
-    /// Voltage in millivolts.
-    pub voltage_mv: Option<f64>,
-    /// Current as the device reports it. Few devices print it here.
-    pub current_raw: Option<i64>,
-    /// Remaining charge in microampere-hours.
-    pub charge_uah: Option<f64>,
 }
 
 impl Battery {
@@ -83,7 +72,6 @@ fn read_battery(text: &str) -> Battery {
     for line in text.lines() {
         let Some((key, value)) = line.trim().split_once(": ") else { continue };
         let value = value.trim();
-        let positive = || value.parse::<f64>().ok().filter(|value| *value > 0.0);
         let mut source = |bit: i32| battery.sources |= if value == "true" { bit } else { 0 };
         match key {
             "AC powered" => source(1),
@@ -93,39 +81,10 @@ fn read_battery(text: &str) -> Battery {
             "status" => battery.status = value.parse().ok().and_then(BatteryStatus::from_android),
             "level" => battery.level_percent = value.parse().ok(),
             "temperature" => battery.celsius = value.parse::<f64>().ok().map(|tenths| tenths / 10.0),
-            "voltage" => battery.voltage_mv = positive(),
-            "Charge counter" => battery.charge_uah = positive(),
-            "current now" => battery.current_raw = value.parse().ok(),
             _ => {}
         }
     }
     battery
-}
-
-/// Returns the battery's state with the kernel's more exact current and voltage, if the shell may read them.
-pub(crate) fn battery_now(device: &Device) -> Result<Battery, DeviceError> {
-    let mut battery = battery(device)?;
-    let kernel = read_kernel_battery(&unless_refused(device.shell(&["cat", KERNEL_BATTERY]))?);
-    battery.voltage_mv = kernel.voltage_mv.or(battery.voltage_mv);
-    battery.current_raw = kernel.current_raw.or(battery.current_raw);
-    Ok(battery)
-}
-
-fn read_kernel_battery(text: &str) -> Battery {
-    let value = |key: &str| {
-        let mut pairs =
-            text.lines().filter_map(|line| line.trim().strip_prefix("POWER_SUPPLY_")?.split_once('='));
-        pairs.find(|(name, _)| *name == key).map(|(_, value)| value)
-    };
-    let microvolts = value("VOLTAGE_NOW").and_then(|value| value.parse::<f64>().ok());
-    Battery {
-        // Some drivers give millivolts.
-        voltage_mv: microvolts
-            .map(|v| if v < 100e3 { v } else { v / 1e3 })
-            .filter(|v| *v >= LEAST_MILLIVOLTS),
-        current_raw: value("CURRENT_NOW").and_then(|value| value.parse().ok()),
-        ..Battery::default()
-    }
 }
 
 /// Returns an empty output if the device refused the command.
@@ -175,9 +134,9 @@ pub(crate) fn clock(device: &Device) -> Result<String, DeviceError> {
     seconds.map(|seconds| format!("{seconds:.6}")).ok_or_else(refused)
 }
 
-/// Returns the version of an application, or `None` if it is not installed.
-pub fn version(device: &Device, package: &str) -> Result<Option<String>, DeviceError> {
-    let text = device.shell(&["dumpsys", "package", package])?;
+/// Returns the version of the application, or `None` if it is not installed.
+pub fn version(device: &Device) -> Result<Option<String>, DeviceError> {
+    let text = device.shell(&["dumpsys", "package", PACKAGE])?;
     let version = text.lines().find_map(|line| line.trim().strip_prefix("versionName="));
     Ok(version.map(|version| version.trim().to_owned()))
 }
@@ -221,33 +180,22 @@ pub(crate) fn start(device: &Device, settings: &Settings) -> Result<(), DeviceEr
     for (key, value) in &pairs {
         words.extend(["--es", key, value]);
     }
-    start_by(device, &words, ACTIVITY)
-}
-
-/// Restarts another application. `activity` may include the package.
-pub(crate) fn start_other(device: &Device, package: &str, activity: &str) -> Result<(), DeviceError> {
-    let component = if activity.contains('/') { activity.into() } else { format!("{package}/{activity}") };
-    start_by(device, &["am", "start", "-S", "-W", "-n", &component], &component)
-}
-
-fn start_by(device: &Device, words: &[&str], component: &str) -> Result<(), DeviceError> {
-    let said = device.shell(words)?;
+    let said = device.shell(&words)?;
     match said.lines().rfind(|line| line.starts_with("Error")) {
-        Some(reason) => Err(device.refused(&format!("am start -n {component}"), reason.trim().into())),
+        Some(reason) => Err(device.refused(&format!("am start -n {ACTIVITY}"), reason.trim().into())),
         None => Ok(()),
     }
 }
 
-/// Ends an application.
-pub(crate) fn stop(device: &Device, package: &str) -> Result<(), DeviceError> {
-    device.shell(&["am", "force-stop", package]).map(drop)
+/// Ends the application.
+pub(crate) fn stop(device: &Device) -> Result<(), DeviceError> {
+    device.shell(&["am", "force-stop", PACKAGE]).map(drop)
 }
 
-/// Returns the process numbers of an application, empty if it does not run.
-pub(crate) fn processes(device: &Device, package: &str) -> Result<Vec<u32>, DeviceError> {
+/// Returns whether the application runs.
+pub(crate) fn runs(device: &Device) -> Result<bool, DeviceError> {
     // `pidof` exits with 1 if it finds no process.
-    let pids = unless_refused(device.shell(&["pidof", package]))?;
-    Ok(pids.split_whitespace().filter_map(|pid| pid.parse().ok()).collect())
+    Ok(!unless_refused(device.shell(&["pidof", PACKAGE]))?.trim().is_empty())
 }
 
 #[cfg(test)]
@@ -258,10 +206,7 @@ mod tests {
     fn battery_and_capacity_are_parsed() {
         let text = "Current Battery Service state:\n  AC powered: false\n  USB powered: true\n  Wireless powered: false\n  Max charging current: 500000\n  status: 2\n  level: 87\n  scale: 100\n  voltage: 4312\n  temperature: 285\n";
         let battery = read_battery(text);
-        assert_eq!(
-            (battery.level_percent, battery.celsius, battery.voltage_mv),
-            (Some(87.0), Some(28.5), Some(4312.0))
-        );
+        assert_eq!((battery.level_percent, battery.celsius), (Some(87.0), Some(28.5)));
         assert!(battery.plugged() && battery.sources == 2);
         assert!(!read_battery(&text.replace("true", "false").replace("status: 2", "status: 3")).plugged());
         assert_eq!(read_battery(""), Battery::default());
@@ -281,15 +226,6 @@ mod tests {
         assert!(!read_battery(&text.replace("status: 4", "status: 5")).plugged());
         let held = text.replace("state:\n", "state:\n  (UPDATES STOPPED -- use 'reset' to restart)\n");
         assert!(read_battery(&held).held);
-    }
-
-    #[test]
-    fn the_kernels_battery_file_is_parsed() {
-        let text = "POWER_SUPPLY_NAME=battery\nPOWER_SUPPLY_STATUS=Discharging\nPOWER_SUPPLY_VOLTAGE_NOW=3987654\nPOWER_SUPPLY_CURRENT_NOW=-512000\n";
-        let battery = read_kernel_battery(text);
-        assert_eq!((battery.voltage_mv, battery.current_raw), (Some(3987.654), Some(-512_000)));
-        assert_eq!(read_kernel_battery(&text.replace("3987654", "3987")).voltage_mv, Some(3987.0));
-        assert_eq!(read_kernel_battery("cat: Permission denied"), Battery::default());
     }
 
     #[test]

@@ -119,11 +119,7 @@ fn gaussian_half() -> [f64; 6] {
     half.map(|weight| weight / sum)
 }
 
-/// The number of values whose local means SSIM needs: a, b, a^2 + b^2 (only the sum of both variances occurs), a b.
-const MOMENTS: usize = 4;
-
-/// Returns the SSIM map for the separable window whose centre and one side are `half`. Each thread processes a band of
-/// rows from top to bottom and keeps the horizontal means of the rows that the window covers.
+/// Returns the SSIM map for the separable window whose centre and one side are `half`.
 fn windowed<const N: usize>(
     a: &RgbImage,
     b: &RgbImage,
@@ -133,70 +129,52 @@ fn windowed<const N: usize>(
 ) -> Vec<f64> {
     const C1: f64 = (0.01 * 255.0) * (0.01 * 255.0);
     const C2: f64 = (0.03 * 255.0) * (0.03 * 255.0);
-    let (width, height) = (a.width() as usize, a.height() as usize);
-    let radius = N - 1;
-    let taps = 2 * N - 1;
+    let width = a.width() as usize;
     let planes = channels.planes();
     let weight = 1.0 / planes.len() as f64;
-    let band = height.div_ceil(4 * rayon::current_num_threads()).max(2 * taps);
-    let mut map = vec![0.0; width * height];
-    map.par_chunks_mut(band * width).enumerate().for_each(|(index, out)| {
-        let top = index * band;
-        let mut padded = vec![0.0; width + 2 * radius];
-        let mut pixels = [vec![0.0; width], vec![0.0; width]];
-        let mut means: [Vec<f64>; MOMENTS] = std::array::from_fn(|_| vec![0.0; width]);
-        let mut ring: [Vec<f64>; MOMENTS] = std::array::from_fn(|_| vec![0.0; width * taps]);
-        for plane in planes {
-            let mut enter = |row: isize, ring: &mut [Vec<f64>; MOMENTS]| {
-                let y = mirror(row, height);
-                for (pixels, image) in pixels.iter_mut().zip([a, b]) {
-                    let row = &image.as_raw()[y * width * 3..(y + 1) * width * 3];
-                    for (value, rgb) in pixels.iter_mut().zip(row.chunks_exact(3)) {
-                        *value = plane[0] * f64::from(rgb[0])
-                            + plane[1] * f64::from(rgb[1])
-                            + plane[2] * f64::from(rgb[2]);
-                    }
-                }
-                let slot = row.rem_euclid(taps as isize) as usize * width;
-                for (moment, ring) in ring.iter_mut().enumerate() {
-                    let middle = &mut padded[radius..radius + width];
-                    for ((value, a), b) in middle.iter_mut().zip(&pixels[0]).zip(&pixels[1]) {
-                        *value = match moment {
-                            0 => *a,
-                            1 => *b,
-                            2 => a * a + b * b,
-                            _ => a * b,
-                        };
-                    }
-                    for k in 0..radius {
-                        padded[radius - 1 - k] = padded[radius + k];
-                        padded[radius + width + k] = padded[radius + width - 1 - k];
-                    }
-                    mean_along_row(half, &padded, &mut ring[slot..slot + width]);
-                }
-            };
-            for row in top as isize - radius as isize..(top + radius) as isize {
-                enter(row, &mut ring);
-            }
-            for (y, out) in out.chunks_exact_mut(width).enumerate() {
-                let y = (top + y) as isize;
-                enter(y + radius as isize, &mut ring);
-                for (ring, mean) in ring.iter().zip(&mut means) {
-                    mean_across_rows(half, ring, y, mean);
-                }
-                let [mean_a, mean_b, squares, products] = &means;
-                for ((((out, ma), mb), s), p) in
-                    out.iter_mut().zip(mean_a).zip(mean_b).zip(squares).zip(products)
-                {
-                    let (ab, aa_bb) = (ma * mb, ma * ma + mb * mb);
-                    let (covariance, variances) = (factor * (p - ab), factor * (s - aa_bb));
-                    *out += weight * ((2.0 * ab + C1) * (2.0 * covariance + C2))
-                        / ((aa_bb + C1) * (variances + C2));
-                }
+    let mut map = vec![0.0; width * a.height() as usize];
+    for plane in planes {
+        let value = |rgb: &[u8]| (0..3).map(|c| plane[c] * f64::from(rgb[c])).sum::<f64>();
+        let [a, b] = [a, b].map(|image| image.par_chunks_exact(3).map(value).collect::<Vec<f64>>());
+        let mean = |of: fn(f64, f64) -> f64| {
+            means(a.par_iter().zip(&b).map(|(a, b)| of(*a, *b)).collect(), width, half)
+        };
+        // Of the variances only their sum occurs.
+        let (mean_a, mean_b) = (mean(|a, _| a), mean(|_, b| b));
+        let (squares, products) = (mean(|a, b| a * a + b * b), mean(|a, b| a * b));
+        map.par_iter_mut().enumerate().for_each(|(i, out)| {
+            let (ab, aa_bb) = (mean_a[i] * mean_b[i], mean_a[i] * mean_a[i] + mean_b[i] * mean_b[i]);
+            let (covariance, variances) = (factor * (products[i] - ab), factor * (squares[i] - aa_bb));
+            *out += weight * ((2.0 * ab + C1) * (2.0 * covariance + C2)) / ((aa_bb + C1) * (variances + C2));
+        });
+    }
+    map
+}
+
+/// Returns the windowed mean around each value of a plane: along its rows, then across them.
+fn means<const N: usize>(mut plane: Vec<f64>, width: usize, half: &[f64; N]) -> Vec<f64> {
+    let (height, radius) = (plane.len() / width, N as isize - 1);
+    let mut rows = vec![0.0; plane.len()];
+    rows.par_chunks_mut(width).zip(plane.par_chunks(width)).for_each(|(out, row)| {
+        let padded: Vec<f64> = (-radius..width as isize + radius).map(|x| row[mirror(x, width)]).collect();
+        for (out, window) in out.iter_mut().zip(padded.windows(2 * N - 1)) {
+            *out = half[0] * window[N - 1];
+            for k in 1..N {
+                *out += half[k] * (window[N - 1 - k] + window[N - 1 + k]);
             }
         }
     });
-    map
+    plane.par_chunks_mut(width).enumerate().for_each(|(y, out)| {
+        let row = |offset: isize| &rows[mirror(y as isize + offset, height) * width..][..width];
+        out.copy_from_slice(row(0));
+        out.iter_mut().for_each(|out| *out *= half[0]);
+        for (k, weight) in half.iter().enumerate().skip(1) {
+            for ((out, above), below) in out.iter_mut().zip(row(-(k as isize))).zip(row(k as isize)) {
+                *out += weight * (above + below);
+            }
+        }
+    });
+    plane
 }
 
 /// Returns the row or column that is shown at a position outside of `0..size`: the border pixel is repeated once, then
@@ -204,73 +182,4 @@ fn windowed<const N: usize>(
 fn mirror(position: isize, size: usize) -> usize {
     let size = size as isize;
     (if position < 0 { -1 - position } else { position.min(2 * size - 1 - position) }) as usize
-}
-
-fn mean_along_row<const N: usize>(half: &[f64; N], padded: &[f64], out: &mut [f64]) {
-    for (out, window) in out.iter_mut().zip(padded.windows(2 * N - 1)) {
-        let mut sum = half[0] * window[N - 1];
-        for k in 1..N {
-            sum += half[k] * (window[N - 1 - k] + window[N - 1 + k]);
-        }
-        *out = sum;
-    }
-}
-
-fn mean_across_rows<const N: usize>(half: &[f64; N], ring: &[f64], y: isize, out: &mut [f64]) {
-    let width = out.len();
-    let row = |offset: isize| {
-        let slot = (y + offset).rem_euclid(2 * N as isize - 1) as usize;
-        &ring[slot * width..(slot + 1) * width]
-    };
-    let above: [&[f64]; N] = std::array::from_fn(|k| row(-(k as isize)));
-    let below: [&[f64]; N] = std::array::from_fn(|k| row(k as isize));
-    for (x, out) in out.iter_mut().enumerate() {
-        let mut sum = half[0] * above[0][x];
-        for k in 1..N {
-            sum += half[k] * (above[k][x] + below[k][x]);
-        }
-        *out = sum;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::tests::image;
-
-    /// Computes one window directly from the definition.
-    fn plain(a: &RgbImage, b: &RgbImage, x0: usize, y0: usize, channel: usize) -> f64 {
-        let half = gaussian_half();
-        let [mut ma, mut mb, mut aa, mut bb, mut ab] = [0.0; 5];
-        for dy in -5isize..=5 {
-            for dx in -5isize..=5 {
-                let x = mirror(x0 as isize + dx, a.width() as usize) as u32;
-                let y = mirror(y0 as isize + dy, a.height() as usize) as u32;
-                let w = half[dx.unsigned_abs()] * half[dy.unsigned_abs()];
-                let (va, vb) =
-                    (f64::from(a.get_pixel(x, y).0[channel]), f64::from(b.get_pixel(x, y).0[channel]));
-                ma += w * va;
-                mb += w * vb;
-                aa += w * va * va;
-                bb += w * vb * vb;
-                ab += w * va * vb;
-            }
-        }
-        let (c1, c2) = (6.5025, 58.5225);
-        (2.0 * ma * mb + c1) * (2.0 * (ab - ma * mb) + c2)
-            / ((ma * ma + mb * mb + c1) * (aa - ma * ma + bb - mb * mb + c2))
-    }
-
-    #[test]
-    fn bands_meet_without_a_seam() {
-        // The image is taller than the bands of any thread count, so that the window crosses all borders between bands.
-        let (a, b) = (image(23, 301, 5), image(23, 301, 6));
-        let map = ssim_map(&a, &b, SsimWindow::Gaussian11, Channels::Rgb).unwrap();
-        for y in 0..301 {
-            for x in [0, 4, 11, 22] {
-                let expected = (0..3).map(|c| plain(&a, &b, x, y, c)).sum::<f64>() / 3.0;
-                assert!((map[y * 23 + x] - expected).abs() < 1e-9, "at {x}, {y}");
-            }
-        }
-    }
 }

@@ -48,7 +48,7 @@ pub const GRID: (u32, u32) = (0xDCDCD8, 0x383B40);
 pub const NEUTRAL: (u32, u32) = (0x777A80, 0x9DA1A8);
 
 /// The looks of methods and patchers by name. Names that stand for the same thing in different suites share a look.
-const LOOKS: [(&[&str], Look); 15] = [
+const LOOKS: [(&[&str], Look); 13] = [
     (&["conventional"], look(0x3D3F44, 0xD2D2CE, Shape::Square)),
     (&["mono", "same image"], Look { hollow: true, ..look(NEUTRAL.0, NEUTRAL.1, Shape::Circle) }),
     (&["instanced"], look(0x9A7400, 0xE0C048, Shape::Up)),
@@ -57,8 +57,6 @@ const LOOKS: [(&[&str], Look); 15] = [
     (&["shading-reprojection"], look(0x5A4FCF, 0xA39BF5, Shape::Square)),
     (&["yoro-gather", "yoro", "gather"], look(0x0072B2, 0x56B4E9, Shape::Circle)),
     (&["yoro-paper", "paper"], look(0xD55E00, 0xF08A3C, Shape::Diamond)),
-    (&["yoro-paper-nearest"], look(0xB3402A, 0xF2836B, Shape::Square)),
-    (&["yoro-paper-strict"], look(0x8F5A2B, 0xD9A273, Shape::Down)),
     (&["median"], look(0x9A7401, 0xE0C049, Shape::Up)),
     (&["xiao"], look(0x009E74, 0x35C79C, Shape::Square)),
     (&["telea"], look(0xB3578D, 0xDD92BE, Shape::Down)),

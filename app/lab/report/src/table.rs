@@ -107,17 +107,20 @@ impl Table {
 
     /// Appends a row.
     pub fn push(&mut self, cells: Vec<Cell>) {
-        self.push_grouped(cells, false);
+        self.lines.push(Line { cells, first: false });
     }
 
     /// Appends a row with a rule above it.
     pub fn push_first(&mut self, cells: Vec<Cell>) {
-        self.push_grouped(cells, true);
+        self.lines.push(Line { cells, first: true });
     }
 
-    /// Appends a row, with a rule above it if it is the first of a group.
-    pub fn push_grouped(&mut self, cells: Vec<Cell>, first: bool) {
-        self.lines.push(Line { cells, first });
+    /// Puts a rule above each row whose first cell differs from that of the row before.
+    pub fn group(&mut self) {
+        for i in 0..self.lines.len() {
+            let is_same = i > 0 && self.lines[i - 1].cells[0] == self.lines[i].cells[0];
+            self.lines[i].first = !is_same;
+        }
     }
 
     /// Appends a row whose figures are replaced by the reason for their absence.

@@ -1,12 +1,13 @@
 //! Options that several subcommands share.
 
 use std::fmt::{self, Display};
+use std::io::Read as _;
 use std::ops::{Range, RangeInclusive};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::str::FromStr;
 
-use anyhow::ensure;
+use anyhow::{Context as _, ensure};
 use clap::builder::{StringValueParser, TypedValueParser};
 
 use crate::cli::choices;
@@ -29,6 +30,16 @@ impl GlArgs {
         log::info!("{}", headless.gl().capabilities().summary());
         Ok(headless)
     }
+}
+
+/// Returns the content of a saved log, or of standard input for `-`.
+pub fn read_log(path: &Path) -> anyhow::Result<Vec<u8>> {
+    if path.as_os_str() != "-" {
+        return Ok(yoro_files::read(path)?);
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin().read_to_end(&mut bytes).context("cannot read standard input")?;
+    Ok(bytes)
 }
 
 /// The patcher, where it is not the pipeline itself that fills the holes.

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::rc::Rc;
 
 use anyhow::{Context as _, bail, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -17,12 +17,14 @@ use yoro::eyes::{Eye, EyeOptions};
 use yoro_assets::load::sidecar_file;
 use yoro_bench::bench::record::{Header, PassClock, VERSION};
 use yoro_bench::bench::{
-    self, Bounds, Choices, Contender, EXPERIMENTS, Experiment, Inputs, Job, LazyObject, Object, Runner,
-    Source, Writer, check_path, process,
+    self, Choices, Contender, EXPERIMENTS, Experiment, Inputs, Job, LazyObject, Object, Runner, Source,
+    Writer, check_path,
 };
 use yoro_bench::inpaint::PatcherOptions;
+use yoro_bench::machine::Parameter;
 use yoro_files::interrupt::Interrupted;
 use yoro_gl::Context;
+use yoro_render::stereo::StereoOptions;
 use yoro_scenes::BUILTINS;
 use yoro_settings::Ipd;
 
@@ -80,12 +82,6 @@ pub struct BenchArgs {
     /// complexity: triangles of the largest scene [default: 13104000, the paper's; quick: 1500000]
     #[arg(long, value_name = "N", value_parser = args::whole::<u64>(1..=200_000_000))]
     max_triangles: Option<u64>,
-    /// complexity: skip scenes that need more memory than this [default: half of what is available]
-    #[arg(long, value_name = "MIB", value_parser = args::whole::<u64>(1..=u64::MAX))]
-    max_memory_mib: Option<u64>,
-    /// complexity: skip scenes whose conventional frame takes longer than this
-    #[arg(long, default_value_t = 10_000, value_name = "MS", value_parser = args::whole::<u64>(1..=u64::MAX))]
-    max_frame_ms: u64,
     /// patchers: another ONNX file than the built-in model of the neural one
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
@@ -113,20 +109,16 @@ impl Subcommand for BenchArgs {
         let out = self.out();
         let headless = self.gl.open()?;
         let gl = headless.gl();
-        let (writer, before) = Writer::open(&out, &header(self, &choices, gl))?;
+        let header = header(self.suites.clone(), self.quick, self.parameters(&choices), gl);
+        let (writer, before) = Writer::open(&out, &header)?;
         let finished = jobs.iter().filter(|job| before.rounds(&job.conditions) >= job.rounds).count();
         if finished > 0 {
             log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
         }
-        let memory = || process::available_mib().map_or(f64::INFINITY, |available| 0.5 * available);
         let inputs = Inputs {
             choices: &choices,
             object: &object,
             path: path.as_deref(),
-            bounds: Bounds {
-                memory_mib: self.max_memory_mib.map_or_else(memory, |mib| mib as f64),
-                frame: Duration::from_millis(self.max_frame_ms),
-            },
             patchers: PatcherOptions { model: self.model.clone() },
         };
         let bar = progress_bar(jobs.iter().map(|job| job.experiment.steps(job)).sum());
@@ -167,6 +159,10 @@ impl BenchArgs {
             quick: self.quick,
             eyes,
             render: self.renderer.render_settings(),
+            options: Rc::new(|pipeline| StereoOptions {
+                policy: None,
+                ..StereoOptions::of_pipeline(pipeline)
+            }),
             rounds: self.rounds.unwrap_or(of(self.quick, 5, 2)),
             viewpoints: self.viewpoints.unwrap_or(of(self.quick, 3, 1)) as usize,
             scenes: self.scenes.clone(),
@@ -182,6 +178,15 @@ impl BenchArgs {
         self.suites.iter().flat_map(|name| {
             EXPERIMENTS.into_iter().filter(move |experiment| name == ALL || name == experiment.name())
         })
+    }
+
+    fn parameters(&self, choices: &Choices) -> Vec<Parameter> {
+        let mut parameters = choices.parameters();
+        for (name, path) in [("camera path", &self.path), ("model", &self.model)] {
+            let value = path.as_ref().map_or_else(|| "none".to_owned(), |path| path.display().to_string());
+            parameters.push(Parameter { name: name.into(), value });
+        }
+        parameters
     }
 
     fn out(&self) -> PathBuf {
@@ -242,22 +247,12 @@ fn jobs(args: &BenchArgs, choices: &Choices, object: &LazyObject) -> anyhow::Res
     Ok(jobs)
 }
 
-fn header(args: &BenchArgs, choices: &Choices, gl: &Context) -> Header {
-    let mut parameters = choices.parameters();
-    let mut file = |name: &str, path: &Option<PathBuf>| {
-        let value = path.as_ref().map_or_else(|| "none".to_owned(), |path| path.display().to_string());
-        parameters.push(yoro_bench::machine::Parameter { name: name.into(), value });
-    };
-    file("camera path", &args.path);
-    file("model", &args.model);
-    Header {
-        yoro_bench: VERSION,
-        suites: args.suites.clone(),
-        quick: args.quick,
-        machine: machine::describe(gl.capabilities()),
-        pass_clock: if gl.capabilities().timer_queries { PassClock::TimerQueries } else { PassClock::Finish },
-        parameters,
-    }
+/// Returns the head of a file of results.
+pub(super) fn header(suites: Vec<String>, quick: bool, parameters: Vec<Parameter>, gl: &Context) -> Header {
+    let capabilities = gl.capabilities();
+    let pass_clock = if capabilities.timer_queries { PassClock::TimerQueries } else { PassClock::Finish };
+    let machine = machine::describe(capabilities);
+    Header { yoro_bench: VERSION, suites, quick, machine, pass_clock, parameters }
 }
 
 /// The name of all suites together.

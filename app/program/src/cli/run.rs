@@ -1,24 +1,26 @@
 //! `yoro run`: compares methods on the built-in scenes, with pictures, figures and a report page.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
-use image::RgbImage;
+use anyhow::Context as _;
 
 use crate::cli::Subcommand;
 use crate::cli::args::{self, GlArgs, list};
+use crate::cli::bench::header;
 use crate::cli::eyes::{self, EyeArgs};
-use crate::cli::machine;
 use crate::cli::settings::{self, Compared, Renderer, SettingOptions};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::Eye;
+use yoro_bench::bench::{
+    self, BenchReport, Choices, Contender, EXPERIMENTS, Inputs, Job, LazyObject, Object, Results, Runner,
+    Writer, picture_folder,
+};
+use yoro_bench::inpaint::PatcherOptions;
 use yoro_bench::machine::Parameter;
-use yoro_bench::report::{RunReport, SceneReport};
-use yoro_bench::run::{Candidate, Plan};
-use yoro_files as files;
 use yoro_gl::Context;
-use yoro_render::RenderSettings;
 use yoro_render::stereo::{Method, Pipeline};
-use yoro_scenes::{self, BUILTINS};
+use yoro_scenes::BUILTINS;
 
 /// Compare rendering both eyes with synthesizing one, on built-in scenes or on files: pictures, figures, a report
 #[derive(clap::Args, Clone, Debug)]
@@ -43,9 +45,6 @@ pub struct RunArgs {
     /// Folder for the report and the pictures
     #[arg(long, default_value = "out", value_name = "FOLDER")]
     out: PathBuf,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
     eyes: EyeArgs,
     #[command(flatten)]
@@ -56,153 +55,111 @@ pub struct RunArgs {
     gl: GlArgs,
 }
 
-impl RunArgs {
-    /// Returns the names of the scenes.
-    fn names(&self) -> Vec<String> {
-        match self.scenes.as_slice() {
-            [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
-            given => given.to_vec(),
-        }
-    }
-}
-
 impl Subcommand for RunArgs {
-    /// Measures, writes the report and prints its table.
+    /// Measures, writes the pictures and the report, and prints a short table.
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;
-        let settings = self.renderer.render_settings();
-        let names = self.names();
-        yoro_scenes::check(&names, self.seed)?;
-        files::create_folder(&self.out)?;
+        let choices = self.choices();
+        yoro_scenes::check(&choices.scenes, self.seed)?;
         let headless = self.gl.open()?;
         let gl = headless.gl();
         for method in &self.methods {
-            settings.supports(*method, gl.capabilities())?;
+            choices.render.supports(*method, gl.capabilities())?;
         }
-        let plan = plan(self, &settings);
-        let bar = progress_bar(names.len() as u64 * plan.steps());
-        // The smallest scene comes first, so that there is something to look at soon.
-        let mut order: Vec<usize> = (0..names.len()).collect();
-        order.sort_by_key(|&at| kilo_triangles(&names[at]));
-        let mut scenes = Vec::new();
-        for at in order {
-            let scene = plan.measure(gl, &names[at], &bar)?;
-            let picture = write_pictures(self, &scene)?;
-            if scenes.is_empty() && !self.json {
-                bar.suspend(|| println!("the first picture: {}", picture.display()));
-            }
-            scenes.push((at, scene));
-        }
-        scenes.sort_by_key(|(at, _)| *at);
-        let scenes = scenes.into_iter().map(|(_, scene)| scene).collect();
-        bar.finish_and_clear();
-        let report = RunReport {
-            title: "yoro: one render, two eyes".into(),
-            machine: machine::describe(gl.capabilities()),
-            parameters: parameters(self, &settings),
-            timing_method: timing_method(self, gl),
-            scenes,
-        };
-        let page = report.write(&self.out)?.page;
-        if self.json {
-            print!("{}", report.to_json()?);
-        } else {
-            print!("{}", report.to_text());
-            println!("\npictures: {}", self.out.join("*.png").display());
-            println!("report:   {}", page.display());
-        }
+        let results = self.measure(&choices, gl)?;
+        print!("{}", bench::text(&results));
+        let page = BenchReport::new(vec![results])?.write(&self.out)?.page;
+        println!("\npictures: {}", self.out.join("*.png").display());
+        println!("report:   {}", page.display());
         Ok(())
     }
 }
 
-/// Returns the plan with each chosen method once.
-fn plan(args: &RunArgs, settings: &RenderSettings) -> Plan {
-    let mut candidates = Vec::new();
-    for (i, &method) in args.methods.iter().enumerate() {
-        match method {
-            _ if args.methods[..i].contains(&method) => {}
-            // The reference is always measured.
-            Method::Conventional => {}
-            Method::Synthesized => candidates.extend(args.pipelines.iter().map(|&pipeline| Candidate {
-                name: pipeline.name(),
-                method,
-                options: args.stereo.options(pipeline),
-            })),
-            _ => {
-                let options = args.stereo.options(Pipeline::default());
-                candidates.push(Candidate { name: method.name(), method, options });
+impl RunArgs {
+    /// Measures the suite of all scenes, the smallest of which comes first, so that there is something to look at soon.
+    fn measure(&self, choices: &Choices, gl: &Rc<Context>) -> anyhow::Result<Results> {
+        let object = LazyObject::new(Box::new(Object::hare));
+        let suites = EXPERIMENTS.into_iter().filter(|suite| suite.name() == SUITE);
+        let jobs: anyhow::Result<Vec<_>> = suites.map(|suite| suite.jobs(choices, &object)).collect();
+        let mut jobs = jobs?.concat();
+        jobs.sort_by_key(|job| kilo_triangles(&job.conditions.scene));
+        let file = self.out.join("run.jsonl");
+        if file.exists() {
+            std::fs::remove_file(&file).with_context(|| format!("cannot replace {}", file.display()))?;
+        }
+        let parameters = self.parameters(choices);
+        let opened = Writer::open(&file, &header(vec![SUITE.into()], false, parameters, gl))?;
+        let inputs =
+            Inputs { choices, object: &object, path: None, patchers: PatcherOptions { model: None } };
+        let bar = progress_bar(jobs.iter().map(|job| job.experiment.steps(job)).sum());
+        let mut runner = Runner::new(gl, inputs, opened, bar.clone());
+        for (i, job) in jobs.iter().enumerate() {
+            runner.run(job)?;
+            let picture = self.save_pairs(&picture_folder(&file, &job.conditions), job)?;
+            if i == 0 {
+                bar.suspend(|| println!("the first picture: {}", picture.display()));
             }
         }
+        bar.finish_and_clear();
+        Ok(Results::read(&file)?)
     }
-    Plan {
-        eyes: args.eyes.options(),
-        render: settings.clone(),
-        conventional: args.stereo.options(Pipeline::default()),
-        candidates,
-        viewpoints: args.viewpoints as usize,
-        rounds: args.rounds,
-        seed: args.seed,
+
+    fn choices(&self) -> Choices {
+        let builtin = || BUILTINS.iter().map(|builtin| builtin.name.to_owned()).collect();
+        let contenders = self.methods.iter().flat_map(|&method| match method {
+            Method::Synthesized => self.pipelines.iter().copied().map(Contender::Synthesized).collect(),
+            other => vec![Contender::Method(other)],
+        });
+        let stereo = self.stereo.clone();
+        Choices {
+            quick: false,
+            eyes: self.eyes.options(),
+            render: self.renderer.render_settings(),
+            options: Rc::new(move |pipeline| stereo.options(pipeline)),
+            rounds: self.rounds,
+            viewpoints: self.viewpoints as usize,
+            scenes: if self.scenes.is_empty() { builtin() } else { self.scenes.clone() },
+            contenders: contenders.collect(),
+            seed: self.seed,
+            object: None,
+            max_triangles: 0,
+        }
+    }
+
+    fn parameters(&self, choices: &Choices) -> Vec<Parameter> {
+        let mut parameters = choices.parameters();
+        for &pipeline in &self.pipelines {
+            let o = self.stereo.options(pipeline);
+            let paper = (pipeline == Pipeline::Paper).then(|| format!(", {:?}", o.synthesis.paper));
+            let value = format!("{}{}", self.eyes.distances(o.guard_band), paper.unwrap_or_default());
+            parameters.push(Parameter { name: pipeline.name().into(), value });
+        }
+        parameters
+    }
+
+    /// Writes both eyes of a scene's first viewpoint side by side, as each method makes them. Returns the last path.
+    fn save_pairs(&self, pictures: &Path, job: &Job) -> anyhow::Result<PathBuf> {
+        let read = |name: &str| yoro_media::load_color(&pictures.join(format!("{name}.png")));
+        let dominant = read("dominant")?;
+        let mut written = PathBuf::new();
+        for contender in job.contenders.iter().filter(|contender| **contender != Contender::MONO) {
+            let name = if *contender == Contender::CONVENTIONAL { "truth".into() } else { contender.name() };
+            let other = read(&name)?;
+            let pair = match self.eyes.dominant {
+                Eye::Left => yoro_media::side_by_side(&dominant, &other),
+                Eye::Right => yoro_media::side_by_side(&other, &dominant),
+            };
+            written = eyes::picture_path(&self.out, &job.conditions.scene, &contender.name());
+            yoro_media::save_color(&written, &pair?)?;
+        }
+        Ok(written)
     }
 }
+
+/// The suite of `yoro bench` that this command measures.
+const SUITE: &str = "scenes";
 
 /// Returns the size of a built-in scene in thousands of triangles; that of a file is not known yet.
 fn kilo_triangles(scene: &str) -> u32 {
     BUILTINS.iter().find(|builtin| builtin.name == scene).map_or(0, |builtin| builtin.kilo_triangles)
-}
-
-/// Writes the pictures of a scene's first viewpoint, and returns the path of the last method's.
-fn write_pictures(args: &RunArgs, scene: &SceneReport) -> anyhow::Result<PathBuf> {
-    let path = |kind: &str| eyes::picture_path(&args.out, &scene.name, kind);
-    let mut shown = path(Method::Conventional.name());
-    let Some(viewpoint) = scene.viewpoints.first() else { return Ok(shown) };
-    let pair = |other: &RgbImage| match args.eyes.dominant {
-        Eye::Left => yoro_media::side_by_side(&viewpoint.dominant, other),
-        Eye::Right => yoro_media::side_by_side(other, &viewpoint.dominant),
-    };
-    yoro_media::save_color(&shown, &pair(&viewpoint.ground_truth)?)?;
-    for view in &viewpoint.views {
-        shown = path(&view.method);
-        yoro_media::save_color(&shown, &pair(&view.eye)?)?;
-        yoro_media::save_color(&path(&format!("{}.error-map", view.method)), &view.error)?;
-    }
-    Ok(shown)
-}
-
-fn parameters(args: &RunArgs, settings: &RenderSettings) -> Vec<Parameter> {
-    let eyes = &args.eyes;
-    let mut parameters = vec![
-        ("size of each eye, pixels", format!("{} x {}", eyes.size[0], eyes.size[1])),
-        ("vertical field of view, degrees", format!("{:.0}", eyes.fov_y.to_degrees())),
-        ("IPD, metres", format!("{}", eyes.ipd)),
-        ("near and far plane, metres", format!("{} and {}", eyes.near, eyes.far)),
-        ("depth", if eyes.reversed_z { "reversed" } else { "standard" }.into()),
-        ("dominant eye", eyes.dominant.name().into()),
-        ("samples per pixel", settings.msaa.to_string()),
-        ("viewpoints per scene", args.viewpoints.to_string()),
-        ("seed", args.seed.to_string()),
-    ];
-    for &pipeline in &args.pipelines {
-        let o = args.stereo.options(pipeline);
-        let mut text = format!("guard band {:?}", o.guard_band);
-        if pipeline == Pipeline::Paper {
-            text += &format!(", {:?}", o.synthesis.paper);
-        }
-        parameters.push((pipeline.name(), text));
-        parameters.push(("near objects", eyes.distances(o.guard_band)));
-    }
-    parameters.into_iter().map(|(name, value)| Parameter { name: name.into(), value }).collect()
-}
-
-fn timing_method(args: &RunArgs, gl: &Context) -> String {
-    let passes = if gl.capabilities().timer_queries {
-        "Pass times are GPU times by timer queries"
-    } else {
-        "Pass times are wall-clock times with glFinish before and after each pass (timer queries of a CPU rasterizer are wrong)"
-    };
-    let count = |n: u32, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
-    format!(
-        "Frame times: wall clock of a whole stereo frame up to glFinish, both eyes finished; one warm-up frame per method, then {} over {}, the order of the methods rotated; medians. {passes}, medians over frames of their own at the first viewpoint.",
-        count(args.rounds, "interleaved round"),
-        count(args.viewpoints, "viewpoint")
-    )
 }

@@ -1,7 +1,6 @@
 //! `yoro study`: plans a user study, collects its ratings, analyses them.
 
 use std::collections::BTreeMap;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
@@ -191,12 +190,7 @@ fn collect(args: &CollectArgs) -> anyhow::Result<()> {
     let plan = args.plan.as_deref().map(read_trials).transpose()?;
     let mut collected = Collected::default();
     for path in &args.logs {
-        let mut bytes = Vec::new();
-        if path.as_os_str() == "-" {
-            std::io::stdin().read_to_end(&mut bytes).context("cannot read standard input")?;
-        } else {
-            bytes = files::read(path)?;
-        }
+        let bytes = args::read_log(path)?;
         collected.add(&path.display().to_string(), &String::from_utf8_lossy(&bytes), plan.as_ref());
     }
     for (name, line, what) in collected.damaged.iter().take(DAMAGED_SHOWN) {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::inpaint::PatcherKind;
-use yoro_render::stereo::{HoleMethod, Method, Pipeline, StereoOptions};
+use yoro_render::stereo::{Method, Pipeline};
 
 /// A stereo method, synthesis with one of its pipelines, or a patcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,10 +14,6 @@ pub enum Contender {
     Synthesized(Pipeline),
     /// The pipeline gather, with rendered holes.
     RenderedHoles,
-    /// The paper's pipeline without interpolation between ImBuffer entries.
-    PaperNearest,
-    /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as in its text.
-    PaperStrict,
     /// A patcher, on the reprojected image that all patchers share.
     Patcher(PatcherKind),
 }
@@ -33,9 +29,7 @@ impl Contender {
 
     /// Returns every contender in the order of tables.
     pub fn all() -> Vec<Contender> {
-        let variants = [Contender::PaperNearest, Contender::PaperStrict];
-        let synthesis = Contender::methods().into_iter().chain(variants);
-        synthesis.chain(Contender::patchers()).collect()
+        [Contender::methods(), Contender::patchers()].concat()
     }
 
     /// Returns the stereo methods, with synthesis once for each of its pipelines, and with rendered holes.
@@ -64,14 +58,12 @@ impl Contender {
     }
 
     /// Returns the name in files and on the command line, which never changes: `conventional`, `yoro-gather`,
-    /// `yoro-paper-nearest`, `patcher-telea`.
+    /// `patcher-telea`.
     pub fn name(self) -> String {
         match self {
             Contender::Method(method) => method.name().into(),
             Contender::Synthesized(pipeline) => format!("yoro-{}", pipeline.name()),
             Contender::RenderedHoles => "yoro-holes-rendered".into(),
-            Contender::PaperNearest => "yoro-paper-nearest".into(),
-            Contender::PaperStrict => "yoro-paper-strict".into(),
             Contender::Patcher(kind) => format!("patcher-{}", kind.name()),
         }
     }
@@ -81,25 +73,14 @@ impl Contender {
         Contender::all().into_iter().find(|contender| contender.name() == name)
     }
 
-    /// Returns the stereo method and its options; `None` for a patcher. The options are the pipeline's defaults, except
-    /// that near frames are not rendered twice: what is measured is what the name says.
-    pub fn method(self) -> Option<(Method, StereoOptions)> {
-        let (method, pipeline) = match self {
-            Contender::Method(method) => (method, Pipeline::default()),
-            Contender::Synthesized(pipeline) => (Method::Synthesized, pipeline),
-            Contender::RenderedHoles => (Method::Synthesized, Pipeline::Gather),
-            Contender::PaperNearest | Contender::PaperStrict => (Method::Synthesized, Pipeline::Paper),
-            Contender::Patcher(_) => return None,
-        };
-        let mut options = StereoOptions::of_pipeline(pipeline);
-        options.policy = None;
-        if self == Contender::RenderedHoles {
-            options.holes = HoleMethod::Rendered;
+    /// Returns the stereo method and its pipeline; `None` for a patcher.
+    pub fn method(self) -> Option<(Method, Pipeline)> {
+        match self {
+            Contender::Method(method) => Some((method, Pipeline::default())),
+            Contender::Synthesized(pipeline) => Some((Method::Synthesized, pipeline)),
+            Contender::RenderedHoles => Some((Method::Synthesized, Pipeline::Gather)),
+            Contender::Patcher(_) => None,
         }
-        let paper = &mut options.synthesis.paper;
-        paper.linear_interpolation &= self != Contender::PaperNearest;
-        paper.strict |= self == Contender::PaperStrict;
-        Some((method, options))
     }
 }
 
@@ -119,21 +100,9 @@ mod tests {
         for contender in Contender::all() {
             assert_eq!(Contender::find(&contender.name()), Some(contender));
         }
-        for name in
-            ["conventional", "mono", "yoro-gather", "yoro-paper", "yoro-paper-strict", "patcher-telea"]
-        {
+        for name in ["conventional", "mono", "yoro-gather", "yoro-paper", "patcher-telea"] {
             assert!(Contender::find(name).is_some(), "{name}");
         }
         assert_eq!(Contender::find("yoro"), None);
-    }
-
-    #[test]
-    fn variants_differ_in_their_options_only() {
-        let options = |contender: Contender| contender.method().unwrap().1;
-        let paper = options(Contender::Synthesized(Pipeline::Paper));
-        assert!(paper.synthesis.paper.linear_interpolation && paper.policy.is_none());
-        assert!(!options(Contender::PaperNearest).synthesis.paper.linear_interpolation);
-        assert!(options(Contender::PaperStrict).synthesis.paper.strict);
-        assert_eq!(Contender::Patcher(PatcherKind::Telea).method(), None);
     }
 }

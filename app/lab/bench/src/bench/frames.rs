@@ -1,20 +1,19 @@
 //! Frames at viewpoints by several contenders: time, passes, memory, quality.
 
-use anyhow::Context as _;
 use image::RgbImage;
 
 use super::contender::Contender;
 use super::holes::HoleFinder;
-use super::job::{Job, Source};
+use super::job::Job;
 use super::process;
 use super::record::{Measurement, Record, metric};
 use super::runner::{Round, Runner, eye_image, left_out, milliseconds};
-use super::subject::{FrameTime, Subject};
+use super::subject::Subject;
 use super::views::Views;
 use yoro_files::interrupt;
 use yoro_metrics::Comparison;
 use yoro_render::PreparedScene;
-use yoro_render::stereo::{ImBufferSize, StereoFrame};
+use yoro_render::stereo::{HoleMethod, StereoFrame};
 
 /// What is measured of frames at viewpoints.
 #[derive(Clone, Copy)]
@@ -36,9 +35,6 @@ pub(super) fn measure(
 ) -> anyhow::Result<()> {
     let views = runner.viewpoints(job, scene)?;
     let mut field = Field::new(runner, job, scene, &views, cost)?;
-    if cost && field.is_too_slow(runner, job, scene, &views)? {
-        return Ok(());
-    }
     for number in runner.rounds(job) {
         runner.announce(job, number);
         let mut round = field.start_round(job, number);
@@ -106,10 +102,11 @@ impl Field {
         let mut field = Field { entries: Vec::new(), frame, records };
         let base = process::resident_mib();
         for &contender in &job.contenders {
-            let Some((method, mut options)) = contender.method() else { continue };
+            let Some((method, pipeline)) = contender.method() else { continue };
             interrupt::check()?;
-            if job.imbuffer > 1 {
-                options.synthesis.paper.imbuffer = ImBufferSize::Divisor(job.imbuffer);
+            let mut options = (runner.inputs.choices.options)(pipeline);
+            if contender == Contender::RenderedHoles {
+                options.holes = HoleMethod::Rendered;
             }
             let before = runner.gl.texture_bytes();
             let made = Subject::new(runner.gl, method, &job.render, &options).map_err(anyhow::Error::from);
@@ -226,30 +223,5 @@ impl Field {
             }
         }
         Ok(())
-    }
-
-    /// Leaves out a swarm's setting if one conventional frame takes longer than the limit. Returns whether it did.
-    fn is_too_slow(
-        &mut self,
-        runner: &mut Runner,
-        job: &Job,
-        scene: &mut PreparedScene,
-        views: &Views,
-    ) -> anyhow::Result<bool> {
-        if !matches!(job.source, Source::Swarm { .. }) {
-            return Ok(false);
-        }
-        let conventional = self.entries.first_mut().context("the conventional method comes first")?;
-        let FrameTime { wall, .. } = conventional.subject.render(scene, &views.pairs[0], &mut self.frame)?;
-        let (takes, allowed) = (wall, runner.inputs.bounds.frame);
-        if takes <= allowed {
-            return Ok(false);
-        }
-        let [takes, allowed] = [takes, allowed].map(milliseconds);
-        runner.leave_out(
-            job,
-            format!("a conventional frame takes {takes:.0} ms, and {allowed:.0} ms are allowed"),
-        )?;
-        Ok(true)
     }
 }

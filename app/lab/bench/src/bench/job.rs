@@ -1,6 +1,7 @@
 //! Jobs: what is measured under one set of conditions.
 
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use anyhow::ensure;
 
@@ -11,10 +12,11 @@ use crate::machine::Parameter;
 use yoro::eyes::EyeOptions;
 use yoro_assets::ShadingStyle;
 use yoro_render::RenderSettings;
+use yoro_render::stereo::{Pipeline, StereoOptions};
 use yoro_scenes::BUILTINS;
 
 /// The user's choices for all suites.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Choices {
     /// True for the short form.
     pub quick: bool,
@@ -22,6 +24,8 @@ pub struct Choices {
     pub eyes: EyeOptions,
     /// The renderer's settings, except where a suite varies them.
     pub render: RenderSettings,
+    /// Returns the options of methods with a pipeline. Near frames are not rendered twice in place of what is measured.
+    pub options: Rc<dyn Fn(Pipeline) -> StereoOptions>,
     /// The number of timed rounds.
     pub rounds: u32,
     /// The number of viewpoints per scene.
@@ -69,8 +73,6 @@ pub struct Job {
     pub render: RenderSettings,
     /// The eyes.
     pub eyes: EyeOptions,
-    /// The divisor of the ImBuffer's resolution.
-    pub imbuffer: u32,
     /// The index among the points of a sweep.
     pub point: usize,
     /// The contenders; none if the experiment has its own. If frames are timed, the conventional method is the first.
@@ -160,7 +162,6 @@ impl Choices {
                     style: None,
                     render: self.render.clone(),
                     eyes: self.eyes,
-                    imbuffer: 1,
                     point: i,
                     contenders: Vec::new(),
                     rounds: 1,

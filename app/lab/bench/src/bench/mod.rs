@@ -12,7 +12,7 @@ mod holes;
 mod job;
 mod measured;
 mod pictures;
-pub mod process;
+mod process;
 pub mod record;
 mod report;
 #[cfg(test)]
@@ -31,18 +31,16 @@ use yoro_report::Section;
 
 pub use blank::{Blank, BlankFinder, BlankView};
 pub use contender::Contender;
-pub use holes::HoleFinder;
 pub use job::{Choices, Job, Source};
 pub use pictures::{picture_folder, pictures_beside};
 pub use record::{Conditions, Measurement, Record, RecordError, Results, Writer, metric};
 pub use report::{BenchReport, BenchReportError};
 pub use results::{Measured, SettingData, Spread, SuiteData};
-pub use runner::{Bounds, Inputs, Runner};
+pub use runner::{Inputs, Runner};
 pub use scenes::{LazyObject, Object};
-pub use subject::{FrameTime, Subject};
 pub use suites::EXPERIMENTS;
 pub use summary::text;
-pub use views::{check_path, spread};
+pub use views::check_path;
 
 /// A suite of `yoro bench`: what it measures, and how its results are shown.
 pub trait Experiment: Sync {

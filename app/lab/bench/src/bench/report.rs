@@ -5,12 +5,11 @@ use std::path::Path;
 use yoro::eyes::Eye;
 use yoro_report::{Pictures, Report, ReportError, ReportFiles, Section, Text};
 
-use super::pictures::picture_folder;
-use super::record::Results;
+use super::pictures::{QUALITY_METHOD, Viewpoint, picture_folder};
+use super::record::{Results, metric};
 use super::results::{self, CONVENTIONAL, MONO, SuiteData};
 use super::suites::EXPERIMENTS;
 use super::tables;
-use crate::report::{QUALITY_METHOD, Viewpoint, pictures};
 use yoro_media::PictureError;
 
 /// The heading of the page.
@@ -83,7 +82,9 @@ impl BenchReport {
         sections.push(pictures);
         sections.retain(|section| !section.is_empty());
         sections.push(self.method());
-        Report { title: TITLE.into(), summary: vec![PAPERS_MARK.into()], sections }
+        let mut summary: Vec<Text> = self.suites.iter().flat_map(answers).map(Text::from).collect();
+        summary.push(PAPERS_MARK.into());
+        Report { title: TITLE.into(), summary, sections }
     }
 
     /// Writes `report.html` and `report.md` into a folder.
@@ -142,6 +143,24 @@ impl BenchReport {
     }
 }
 
+/// Returns a sentence for each pipeline on the suite `scenes`: its quality and its cost, each beside its baseline.
+fn answers(suite: &SuiteData) -> Vec<String> {
+    let of = |name: &str| {
+        let mean = |contender: &str, metric| suite.mean(contender, metric);
+        let both = |contender: &str| Some((mean(contender, metric::PSNR)?, mean(contender, metric::SSIM)?));
+        let ((psnr, ssim), (same_psnr, same_ssim)) = (both(name)?, both(MONO)?);
+        Some(format!(
+            "**{name}**: the synthesized eye has PSNR **{psnr:.2} dB**, SSIM **{ssim:.4}** (same image to both eyes: \
+             {same_psnr:.2} dB, {same_ssim:.4}); a stereo frame takes **{:.2}** of the time of two full renders. Means \
+             over {}.",
+            suite.mean_cost(name)?,
+            suite.scenes().join(", ")
+        ))
+    };
+    let names = suite.compared(metric::SSIM).into_iter();
+    names.filter(|name| suite.name == "scenes" && name.starts_with("yoro")).filter_map(of).collect()
+}
+
 /// Loads the pictures beside a file, in the order of its settings.
 fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
     let mut all = Vec::new();
@@ -167,16 +186,17 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
         }
         let frame = facts.frames.first().cloned().unwrap_or_else(|| "first frame".into());
         let (dominant, truth) = (load("dominant")?, load("truth")?);
-        let viewpoint = Viewpoint::measure(frame, dominant_eye, dominant, truth, views).map_err(|error| {
+        let setting = &facts.conditions;
+        let point = setting.label.clone().or(setting.point.map(|point| point.to_string()));
+        let note = point.map_or_else(|| setting.suite.clone(), |point| format!("{}, {point}", setting.suite));
+        let viewpoint = Viewpoint { dominant_eye, dominant, truth, views };
+        let shown = viewpoint.shown(setting.scene.clone(), format!("{note}, {frame}"));
+        all.push(shown.map_err(|error| {
             BenchReportError::Unusable(format!(
                 "the pictures in {} do not go together ({error}): measure again, or remove the folder",
                 folder.display()
             ))
-        })?;
-        let setting = &facts.conditions;
-        let point = setting.label.clone().or(setting.point.map(|point| point.to_string()));
-        let note = point.map_or_else(|| setting.suite.clone(), |point| format!("{}, {point}", setting.suite));
-        all.push(pictures(&viewpoint, setting.scene.clone(), format!("{note}, {}", viewpoint.name)));
+        })?);
     }
     Ok(all)
 }

@@ -21,18 +21,6 @@ use yoro_gl::Context;
 use yoro_render::stereo::StereoFrame;
 use yoro_render::{PreparedScene, RenderSettings};
 
-/// The approximate number of bytes per triangle while a scene is built and uploaded, for the limit on memory.
-const BYTES_PER_TRIANGLE: f64 = 150.0;
-
-/// The limits above which a scene is left out.
-#[derive(Clone, Copy, Debug)]
-pub struct Bounds {
-    /// Memory in MiB that the scene may need.
-    pub memory_mib: f64,
-    /// The time that a frame of the conventional method may take.
-    pub frame: Duration,
-}
-
 /// The inputs that all jobs of a run share.
 pub struct Inputs<'a> {
     /// The user's choices for all suites.
@@ -41,8 +29,6 @@ pub struct Inputs<'a> {
     pub object: &'a LazyObject,
     /// A camera path that replaces those of the scenes.
     pub path: Option<&'a [Viewpoint]>,
-    /// The limits above which a scene is left out.
-    pub bounds: Bounds,
     /// The options of patchers.
     pub patchers: PatcherOptions,
 }
@@ -84,21 +70,12 @@ impl<'a> Runner<'a> {
     /// rounds are in the file in both cases.
     pub fn run(&mut self, job: &Job) -> anyhow::Result<()> {
         let done = self.before.rounds(&job.conditions);
-        if done >= job.rounds || self.before.is_left_out(&job.conditions) {
+        if done >= job.rounds {
             self.bar.inc(job.experiment.steps(job));
             return Ok(());
         }
         self.bar.set_message(format!("{}: preparing", job.conditions));
         interrupt::check()?;
-        if let Some(reason) = self.too_large(job) {
-            return self.leave_out(job, reason);
-        }
-        // Where a suite varies the samples, the driver may lack some of them. What the user asks for is an error instead.
-        if job.render.msaa != self.inputs.choices.render.msaa
-            && let Err(reason) = job.render.supported(self.gl.capabilities())
-        {
-            return self.leave_out(job, reason.to_string());
-        }
         let key = SceneKey { source: job.source.clone(), style: job.style, render: job.render.clone() };
         let mut prepared = match self.prepared.take() {
             Some((present, prepared)) if present == key => prepared,
@@ -111,15 +88,6 @@ impl<'a> Runner<'a> {
         let measured = job.experiment.measure(self, job, &mut prepared);
         self.prepared = Some((key, prepared));
         measured
-    }
-
-    fn too_large(&self, job: &Job) -> Option<String> {
-        let Source::Swarm { copies, .. } = job.source else { return None };
-        let needed =
-            self.inputs.object.swarm_triangles(copies) as f64 * BYTES_PER_TRIANGLE / f64::from(1 << 20);
-        let bound = self.inputs.bounds.memory_mib;
-        (needed > bound)
-            .then(|| format!("the scene needs about {needed:.0} MiB, and {bound:.0} MiB are allowed"))
     }
 
     fn scene(&self, job: &Job) -> anyhow::Result<Scene> {
@@ -191,16 +159,6 @@ impl<'a> Runner<'a> {
         BlankFinder::new(self.gl)?.refuse_blank(scene, named)
     }
 
-    /// Records for every contender that the setting was left out, and why.
-    pub(super) fn leave_out(&mut self, job: &Job, reason: String) -> anyhow::Result<()> {
-        log::warn!("{} is left out: {reason}", job.conditions);
-        let mut round = Round::new(job, 0);
-        round.records =
-            job.contenders.iter().map(|contender| unsupported(job, *contender, &reason)).collect();
-        self.bar.inc(job.experiment.steps(job));
-        self.finish(round)
-    }
-
     /// Saves a picture of the setting for the report.
     pub(super) fn save_picture(&self, job: &Job, name: &str, image: &RgbImage) -> anyhow::Result<()> {
         let folder = picture_folder(&self.before.path, &job.conditions);
@@ -251,18 +209,14 @@ impl Round {
     }
 }
 
-fn unsupported(job: &Job, contender: Contender, reason: &str) -> Record {
-    Record::Unsupported(Unsupported {
-        conditions: job.conditions.clone(),
-        contender: contender.name(),
-        reason: reason.to_owned(),
-    })
-}
-
 /// Returns the record of a contender that could not be created.
 pub(super) fn left_out(job: &Job, contender: Contender, error: &impl std::fmt::Display) -> Record {
     log::info!("{}: {contender} is left out: {error}", job.conditions);
-    unsupported(job, contender, &error.to_string())
+    Record::Unsupported(Unsupported {
+        conditions: job.conditions.clone(),
+        contender: contender.name(),
+        reason: error.to_string(),
+    })
 }
 
 /// Returns one eye of a finished frame.

@@ -2,7 +2,7 @@
 
 use super::record::metric;
 use super::results::{CONVENTIONAL, MONO, Measured, SettingData, SuiteData};
-use yoro_report::paper::{self, PaperScene};
+use yoro_report::paper::{self, PAPER, PaperScene};
 use yoro_report::stats::{mean, percentile, unique};
 use yoro_report::text::{fixed, short_count};
 use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
@@ -160,7 +160,6 @@ pub(super) fn time_details(suite: &SuiteData, papers: impl Fn(&SettingData, &str
     ];
     let mut table = Table::new("Frame times in full", &columns);
     for setting in &suite.settings {
-        let mut first = true;
         for measured in &setting.contenders {
             let Some(times) = measured.summary(metric::FRAME_MS) else { continue };
             let samples = measured.samples(metric::FRAME_MS);
@@ -180,9 +179,10 @@ pub(super) fn time_details(suite: &SuiteData, papers: impl Fn(&SettingData, &str
                 Cell::plain(spread.unwrap_or_default()),
                 Cell::paper(fixed(papers(setting, &measured.name), 3)),
             ];
-            table.push_grouped(cells, std::mem::take(&mut first));
+            table.push(cells);
         }
     }
+    table.group();
     push_refusals(&mut table, suite);
     table.note = "Ratio: frame time over that of conventional rendering, frame by frame within each interleaved round; \
                   its median and quartiles."
@@ -233,7 +233,6 @@ pub(super) fn metric_table(suite: &SuiteData, title: &str, contenders: &[&str]) 
     let headings: Vec<&str> = measured.iter().map(|(heading, ..)| *heading).collect();
     let mut table = table_of(title, &["<scene", "<method"], &headings);
     for setting in &suite.settings {
-        let mut first = true;
         for name in contenders {
             let Some(of) = setting.find(name) else { continue };
             let mut cells = vec![Cell::plain(setting.label()), Cell::plain(*name)];
@@ -241,9 +240,10 @@ pub(super) fn metric_table(suite: &SuiteData, title: &str, contenders: &[&str]) 
                 let scale = if *metric == metric::HOLE_SHARE { 100.0 } else { 1.0 };
                 cells.push(cell(name, fixed(of.mean(metric).map(|value| value * scale), *decimals)));
             }
-            table.push_grouped(cells, std::mem::take(&mut first));
+            table.push(cells);
         }
     }
+    table.group();
     push_refusals(&mut table, suite);
     table
 }
@@ -353,77 +353,43 @@ impl Sweep {
     }
 }
 
-/// What differs between sections of suites whose settings have labels.
-pub(super) struct Labels {
-    /// The heading of the labels' column.
-    pub column: &'static str,
-    /// The title of the table with a row for each label.
-    pub title: &'static str,
-    /// The title of the table with all settings.
-    pub details: &'static str,
-    /// The paper's SSIM and PSNR in dB of a label; `None` if it has none at all.
-    pub papers: Option<PaperFigures>,
-    /// True if frame times were measured.
-    pub timed: bool,
-}
-
-/// Returns the paper's SSIM and PSNR in dB of a label.
-pub type PaperFigures = fn(&str) -> Option<[f64; 2]>;
-
-impl Labels {
-    /// Adds plots of quality, a table with a row for each label, and one with all settings.
-    pub fn show(&self, section: &mut Section, suite: &SuiteData) {
-        let contenders = suite.compared(metric::SSIM);
-        let value = |label: &str, contender: &str, name: &str| {
-            mean(suite.labelled(label).filter_map(|setting| setting.find(contender)?.mean(name)))
-        };
-        let paper_of = |label: &str| self.papers.and_then(|papers| papers(label));
-        for QualityPlot { metric, axis, caption } in QUALITY_PLOTS {
-            let caption = format!("{caption} Means over the scenes.");
-            let mut plot = Plot::rows(axis, Axis::new(axis)).caption(caption);
-            for label in suite.labels() {
-                for contender in &contenders {
-                    if let Some(value) = value(label, contender, metric) {
-                        plot.mark(label, Entry::ours(*contender), value);
-                    }
-                }
-                let papers = paper_of(label).and_then(|[ssim, psnr]| match metric {
-                    metric::SSIM => Some(ssim),
-                    metric::PSNR => Some(psnr),
-                    _ => None,
-                });
-                if let Some(value) = papers {
-                    plot.mark(label, papers_entry("yoro-paper"), value);
+/// Adds plots of quality by shading style, a table with a row for each style, and one with all settings.
+pub(super) fn show_styles(section: &mut Section, suite: &SuiteData) {
+    let contenders = suite.compared(metric::SSIM);
+    let value = |style: &str, contender: &str, name: &str| {
+        mean(suite.labelled(style).filter_map(|setting| setting.find(contender)?.mean(name)))
+    };
+    for QualityPlot { metric, axis, caption } in QUALITY_PLOTS {
+        let caption = format!("{caption} Means over the scenes.");
+        let mut plot = Plot::rows(axis, Axis::new(axis)).caption(caption);
+        for style in suite.labels() {
+            for contender in &contenders {
+                if let Some(value) = value(style, contender, metric) {
+                    plot.mark(style, Entry::ours(*contender), value);
                 }
             }
-            section.plot(plot);
+            let at = [metric::SSIM, metric::PSNR].iter().position(|name| *name == metric);
+            if let (Some(papers), Some(at)) = (PAPER.styles.get(style), at) {
+                plot.mark(style, papers_entry("yoro-paper"), papers[at]);
+            }
         }
-        let mut table = table_of(self.title, &[self.column], &contenders);
-        for label in suite.labels() {
-            let text = |name: &&str| {
-                let pair = value(label, name, metric::PSNR).zip(value(label, name, metric::SSIM));
-                let ratios = suite.labelled(label).filter_map(|setting| {
-                    let of = |contender: &str| setting.find(contender)?.median(metric::FRAME_MS);
-                    Some(of(name)? / of(CONVENTIONAL)?)
-                });
-                let ratio = mean(ratios).filter(|_| self.timed);
-                let ratio = ratio.map_or_else(String::new, |ratio| format!(" / {ratio:.2}"));
-                cell(name, pair.map(|(psnr, ssim)| format!("{psnr:.2} / {ssim:.4}{ratio}")))
-            };
-            table.push([Cell::plain(label)].into_iter().chain(contenders.iter().map(text)).collect());
-        }
-        push_refusals(&mut table, suite);
-        if self.papers.is_some() {
-            let column = suite
-                .labels()
-                .into_iter()
-                .map(|label| paper_of(label).map(|[ssim, psnr]| format!("{psnr:.1} / {ssim:.3}")));
-            add_papers_column(&mut table, "the paper's YORO", column.collect());
-        }
-        table.note = format!("Scenes: {}.", suite.scenes().join(", "));
-        section.table(table);
-        section.table(metric_table(suite, self.details, &contenders));
+        section.plot(plot);
     }
+    let mut table = table_of("PSNR in dB / SSIM, means over the scenes", &["<style"], &contenders);
+    for style in suite.labels() {
+        let text = |name: &&str| {
+            let [psnr, ssim] = [metric::PSNR, metric::SSIM].map(|metric| value(style, name, metric));
+            cell(name, psnr_ssim(psnr, ssim))
+        };
+        table.push([Cell::plain(style)].into_iter().chain(contenders.iter().map(text)).collect());
+    }
+    push_refusals(&mut table, suite);
+    let papers = suite.labels().into_iter().map(|style| PAPER.styles.get(style));
+    let papers = papers.map(|papers| papers.map(|[ssim, psnr]| format!("{psnr:.1} / {ssim:.3}")));
+    add_papers_column(&mut table, "the paper's YORO", papers.collect());
+    table.note = format!("Scenes: {}.", suite.scenes().join(", "));
+    section.table(table);
+    section.table(metric_table(suite, "Every scene and style in full", &contenders));
 }
 
 /// Adds a column with the paper's figures of a table's first rows. The last cell of the others spans it.

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use image::Rgb;
 use rayon::prelude::*;
 
-use super::patcher::{HOLE, InpaintError, PatchTime, Patched, Patcher, Reprojected};
+use super::patcher::{HOLE, InpaintError, PatchTime, Patched, Patcher, Reprojected, around};
 
 /// The radius in pixels within which known pixels are averaged.
 const RADIUS: i32 = 3;
@@ -63,7 +63,7 @@ impl Patcher for March {
 
 /// Returns the pixels of all holes in groups that do not influence each other, row by row in each.
 pub(super) fn regions(image: &Reprojected) -> Vec<Vec<[u32; 2]>> {
-    let [width, height] = image.size().map(|n| n as usize);
+    let [width, _] = image.size().map(|n| n as usize);
     // Filling reads the pixels within RADIUS and their neighbours.
     let near = near_holes(image, RADIUS as usize + 1);
     const UNSEEN: u32 = u32::MAX;
@@ -77,14 +77,10 @@ pub(super) fn regions(image: &Reprojected) -> Vec<Vec<[u32; 2]>> {
         labels[first] = count;
         waiting.push(first);
         while let Some(i) = waiting.pop() {
-            let (x, y) = (i % width, i / width);
-            for v in y.saturating_sub(1)..(y + 2).min(height) {
-                for u in x.saturating_sub(1)..(x + 2).min(width) {
-                    let j = v * width + u;
-                    if near[j] && labels[j] == UNSEEN {
-                        labels[j] = count;
-                        waiting.push(j);
-                    }
+            for j in around(i, image.size()) {
+                if near[j] && labels[j] == UNSEEN {
+                    labels[j] = count;
+                    waiting.push(j);
                 }
             }
         }

@@ -235,3 +235,12 @@ pub(super) fn nearest_rows(height: u32, known: impl Fn(u32) -> bool) -> Vec<u32>
     };
     (0..height).map(nearest).collect()
 }
+
+/// Returns the indices, row by row, of a pixel and of those around it.
+pub(super) fn around(i: usize, size: [u32; 2]) -> impl Iterator<Item = usize> {
+    let [width, height] = size.map(|n| n as usize);
+    let (x, y) = (i % width, i / width);
+    let columns = x.saturating_sub(1)..(x + 2).min(width);
+    let rows = y.saturating_sub(1)..(y + 2).min(height);
+    rows.flat_map(move |v| columns.clone().map(move |u| v * width + u))
+}

@@ -7,7 +7,7 @@ use glam::IVec2;
 use image::{GrayImage, Rgb, RgbImage};
 
 use super::patcher::{
-    HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID, nearest_rows,
+    HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID, around, nearest_rows,
 };
 use yoro::eyes::Eye;
 use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
@@ -134,39 +134,16 @@ fn filled(rgba: &[u8], size: [u32; 2]) -> RgbImage {
 /// Returns the largest distance in pixels of a hole's pixel from the nearest valid one, with diagonal steps counting 1;
 /// 0 without holes.
 pub(super) fn hole_depth(mask: &GrayImage) -> u32 {
-    let [width, height] = [mask.width() as usize, mask.height() as usize];
-    let mut distance: Vec<u32> =
-        mask.pixels().map(|m| if m.0[0] == HOLE { u32::MAX - 1 } else { 0 }).collect();
-    // A forward and a backward sweep. Each takes the four neighbours that it has already visited.
-    for y in 0..height {
-        for x in 0..width {
-            let row = y * width;
-            let mut nearest = distance[row + x];
-            if x > 0 {
-                nearest = nearest.min(distance[row + x - 1] + 1);
-            }
-            if y > 0 {
-                for i in x.saturating_sub(1)..(x + 2).min(width) {
-                    nearest = nearest.min(distance[row - width + i] + 1);
-                }
-            }
-            distance[row + x] = nearest;
+    let size: [u32; 2] = mask.dimensions().into();
+    let mut is_open: Vec<bool> = mask.pixels().map(|m| m.0[0] == HOLE).collect();
+    let mut ring: Vec<usize> = (0..is_open.len()).filter(|i| !is_open[*i]).collect();
+    let mut depth = 0;
+    loop {
+        let reached = ring.iter().flat_map(|i| around(*i, size)).filter(|i| std::mem::take(&mut is_open[*i]));
+        ring = reached.collect();
+        if ring.is_empty() {
+            return depth;
         }
+        depth += 1;
     }
-    for y in (0..height).rev() {
-        for x in (0..width).rev() {
-            let row = y * width;
-            let mut nearest = distance[row + x];
-            if x + 1 < width {
-                nearest = nearest.min(distance[row + x + 1] + 1);
-            }
-            if y + 1 < height {
-                for i in x.saturating_sub(1)..(x + 2).min(width) {
-                    nearest = nearest.min(distance[row + width + i] + 1);
-                }
-            }
-            distance[row + x] = nearest;
-        }
-    }
-    distance.into_iter().max().unwrap_or(0)
 }

@@ -55,7 +55,7 @@ pub fn conduct(
     out: &Path,
     bar: &ProgressBar,
 ) -> Result<Progress, DeviceError> {
-    let found = run::look(device, phone::PACKAGE)?;
+    let found = run::look(device)?;
     // Even if the device is unlocked now, a restart would lock it again with nobody there to unlock it.
     if phone::keyguard(device)?.secure {
         return Err(run::locked(device));
@@ -170,7 +170,7 @@ impl Conductor<'_> {
                 return Err(DeviceError::Interrupted);
             }
             let waited = now() - begin;
-            let asked = phone::stop(self.device, plan.package()).and_then(|()| phone::battery(self.device));
+            let asked = phone::stop(self.device).and_then(|()| phone::battery(self.device));
             let battery = match asked {
                 Ok(battery) => battery,
                 Err(error) if error.is_lost() => {

@@ -336,7 +336,6 @@ impl Experiment {
         // Does not fail: `read` has checked the settings.
         let settings = self.viewer_settings(entry, scene).unwrap_or_default();
         let plan = Plan {
-            other: None,
             experiment: Some(self.name.clone()),
             method: entry.name.clone(),
             settings,

@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 
 use crate::capture::{Fault, FaultKind, Sample};
 use crate::log::{self, Entry, Kind, VRAPI_TAG};
-use crate::phone::LEAST_MILLIVOLTS;
 use yoro_settings::telemetry::{BatteryStatus, LOG_TAG, Line, fields};
 
 /// A line is a clock jump if the device's clock and the session's time have advanced by amounts that differ by more
@@ -17,6 +16,8 @@ const JUMP_S: f64 = 2.0;
 const GAP_S: f64 = 1.8;
 /// Lowest thermal status of Android at which the device throttles (`THERMAL_STATUS_MODERATE`).
 const THROTTLED: i32 = 2;
+/// Minimum voltage that is taken for millivolts. Some phones give whole volts, which are too coarse for power.
+pub(crate) const LEAST_MILLIVOLTS: f64 = 100.0;
 /// Maximum plausible time in seconds between the last line of a session and the first line of the next.
 const LONGEST_PAUSE_S: f64 = 3600.0;
 /// Values of the current that stand for a missing one: those of Meta's tools, and the limits of integer types.
@@ -69,10 +70,8 @@ pub struct Reading {
     /// The run whose lines are read, or `None` for all lines.
     run: Option<String>,
     session: Option<Session>,
-    /// Values of Meta's runtime since the last sample. They become a sample if the application logs nothing itself.
-    runtime: Option<Sample>,
-    /// The device's clock at the first line of a log that has only the runtime's lines.
-    runtime_begin: Option<f64>,
+    /// Values of Meta's runtime since the last sample, by key.
+    runtime: BTreeMap<String, String>,
     /// Time of the last sample.
     time_s: f64,
     methods: Vec<(String, String)>,
@@ -142,7 +141,10 @@ impl Reading {
         }
         match kind {
             Kind::Entry(entry) if entry.tag == LOG_TAG => self.own(&entry, passed_s),
-            Kind::Entry(entry) if entry.tag == VRAPI_TAG => self.runtime(&entry),
+            Kind::Entry(entry) if entry.tag == VRAPI_TAG => {
+                self.runtime(entry.message);
+                LineContent::Other
+            }
             Kind::Entry(_) | Kind::Mark => LineContent::Other,
             Kind::Damaged => match self.is_raw {
                 Some(false) => self.damage("it is no line of logcat".into()),
@@ -237,7 +239,7 @@ impl Reading {
     }
 
     /// Counts the anomalies of a second, from the battery values and thermal status of its line.
-    pub(crate) fn count_anomalies(&mut self, line: &Line, at_s: f64) {
+    fn count_anomalies(&mut self, line: &Line, at_s: f64) {
         self.judged += 1;
         let is_idle = matches!(line.status, Some(BatteryStatus::NotCharging));
         let is_plugged = line.plugged.is_some_and(|plugged| plugged != 0) || is_idle;
@@ -260,7 +262,7 @@ impl Reading {
 
     fn sample(&mut self, line: Line, message: &str, time_s: f64) -> Sample {
         let numbers = Sample::of(&line);
-        let mut other = self.runtime.take().map(|runtime| runtime.other).unwrap_or_default();
+        let mut other = std::mem::take(&mut self.runtime);
         // Values that the run's description has need no column.
         let is_known = |key: &str| Sample::has_field(key) || ["v", "run", "method", "scene"].contains(&key);
         for field in fields(message).filter(|field| !is_known(field.key)) {
@@ -284,72 +286,24 @@ impl Reading {
         }
     }
 
-    /// Reads a line of Meta's runtime. Only lines that begin with the frame rate are used; with App SpaceWarp there is
-    /// a second line, which begins with `ASW=`. The values are merged into the application's next line. They make a
-    /// sample of their own only if the application logs no lines, as other applications do not.
-    fn runtime(&mut self, entry: &Entry) -> LineContent {
-        if !entry.message.starts_with("FPS=") {
-            return LineContent::Other;
+    /// Keeps the values of Meta's runtime for the application's next line. Only lines that begin with the frame rate are
+    /// used; with App SpaceWarp there is a second line, which begins with `ASW=`.
+    fn runtime(&mut self, message: &str) {
+        if !message.starts_with("FPS=") {
+            return;
         }
-        let mut found = BTreeMap::new();
+        self.runtime.clear();
         let mut unnamed = 0;
-        for field in fields(entry.message) {
-            match field.value {
-                Some(value) => found.insert(format!("VrApi.{}", field.key), value.to_owned()),
-                None => {
+        for field in fields(message) {
+            let (key, value) = field.value.map_or_else(
+                || {
                     unnamed += 1;
-                    found.insert(format!("VrApi.{unnamed}"), field.key.to_owned())
-                }
-            };
+                    (format!("VrApi.{unnamed}"), field.key)
+                },
+                |value| (format!("VrApi.{}", field.key), value),
+            );
+            self.runtime.insert(key, value.to_owned());
         }
-        let value = |key: &str| found.get(&format!("VrApi.{key}")).map(String::as_str);
-        // Until 2020 the display's rate was missing. In this case the line must at least have more values.
-        let rates = value("FPS").unwrap_or_default();
-        let (fps, refresh) = match rates.split_once('/') {
-            Some((fps, refresh)) => (fps.parse::<f64>(), Some(refresh.parse::<f64>())),
-            None => (rates.parse::<f64>(), None),
-        };
-        let (Ok(fps), Ok(refresh)) = (fps, refresh.transpose()) else {
-            return self.damage("the frame rate of VrApi is no number: the line is cut or damaged".into());
-        };
-        if refresh.is_none() && found.len() == 1 {
-            return self.damage("the line of VrApi ends with its first value: it is cut".into());
-        }
-        let number = |text: Option<&str>, unit: &str| text?.strip_suffix(unit)?.parse::<f64>().ok();
-        let begin = entry.time_s.map(|clock| *self.runtime_begin.get_or_insert(clock));
-        // If the log has no times, assume a line per second.
-        let count = self.runtime.as_ref().map_or(0.0, |before| before.time_s + 1.0);
-        let time_s = entry.time_s.zip(begin).map_or(count, |(clock, begin)| clock - begin);
-        let celsius = value("Temp").and_then(|text| text.split('/').next());
-        let sample = Sample {
-            time_s,
-            fps: Some(fps),
-            refresh_hz: refresh,
-            stale: number(value("Stale"), ""),
-            gpu_ms: number(value("App"), "ms"),
-            battery_celsius: number(celsius, "C"),
-            other: found,
-            ..Sample::default()
-        };
-        let before = self.runtime.replace(sample);
-        // In a log with lines of the application, the runtime's lines make no samples of their own.
-        if self.session.is_some() || self.run.is_some() {
-            return LineContent::Other;
-        }
-        before.map_or(LineContent::Other, |before| LineContent::Sample(Box::new(self.alone(before))))
-    }
-
-    fn alone(&mut self, sample: Sample) -> Sample {
-        self.time_s = sample.time_s;
-        self.seconds += 1;
-        sample
-    }
-
-    /// Returns the last sample of a log that has only the runtime's lines. Each of them is held back in case a line of
-    /// the application follows.
-    pub fn end(&mut self) -> Option<Sample> {
-        let last = self.runtime.take()?;
-        (self.session.is_none() && self.run.is_none()).then(|| self.alone(last))
     }
 
     /// Returns the faults found so far, in the order of [`FaultKind`].
@@ -360,7 +314,6 @@ impl Reading {
         if self.plugged.times > 0 {
             add(FaultKind::PluggedIn, self.plugged.first_s, format!("plugged in for {}", of(self.plugged)));
         }
-        // A log with only the runtime's lines has no battery values.
         let without = self.judged - self.with_current;
         if without > 0 {
             let at_s = (self.with_current > 0).then_some(0.0);

@@ -62,6 +62,9 @@ fn unknown_keys_stages_and_runtime_values_are_kept() {
     let first = sample(reading.line(&logged(1e9, 7, &text), None));
     assert_eq!((first.other["VrApi.FPS"].as_str(), reading.samples()), ("70/72", 1));
     assert_eq!(reading.line(runtime, None), LineContent::Other);
+    // The second line of App SpaceWarp (Meta's guide to it).
+    let warp = "1000000000.6 1 2 I VrApi   : ASW=72, Type=App E=-0.000/0.250,D=0.000/0.000";
+    assert_eq!(reading.line(warp, None), LineContent::Other);
     text = text.replace("t=1.0s", "t=2.0s") + ",gaze=0.5";
     let kept = sample(reading.line(&logged(1e9 + 1.0, 7, &text), None));
     let get = |key: &str| kept.other.get(key).map(String::as_str);
@@ -71,26 +74,6 @@ fn unknown_keys_stages_and_runtime_values_are_kept() {
         (Some("3"), Some("1171/441MHz"), Some("2(DR72,LM2)"))
     );
     assert_eq!((kept.stale, kept.gpu_ms, get("run")), (None, Some(2.0), None));
-}
-
-#[test]
-fn another_applications_frame_rates_become_samples() {
-    let mut reading = Reading::default();
-    let mut read = Vec::new();
-    for i in 0..3 {
-        let text = format!("100000000{i}.5 1 2 I VrApi   : FPS=71/72,Stale=3,Temp=32.2C/0.0C,App=4.49ms");
-        if let LineContent::Sample(sample) = reading.line(&text, None) {
-            read.push(*sample);
-        }
-    }
-    assert!(matches!(reading.line("1000000009.5 1 2 I VrApi   : FPS=7", None), LineContent::Damaged(_)));
-    read.extend(reading.end());
-    assert_eq!(read.iter().map(|sample| sample.time_s).collect::<Vec<_>>(), [0.0, 1.0, 2.0]);
-    for sample in read {
-        assert_eq!((sample.fps, sample.refresh_hz, sample.stale), (Some(71.0), Some(72.0), Some(3.0)));
-        assert_eq!((sample.gpu_ms, sample.battery_celsius), (Some(4.49), Some(32.2)));
-    }
-    assert_eq!((kinds(&reading), reading.end()), (vec![FaultKind::DamagedLines], None));
 }
 
 #[test]
@@ -122,29 +105,6 @@ fn placeholders_of_the_battery_are_left_out() {
     }
     let (_, faults) = read(|line| line.status = Some(BatteryStatus::NotCharging));
     assert_eq!((faults.len(), faults[0].0), (1, PluggedIn));
-}
-
-/// Statistics as headsets logged them: Quest 2 in 2020 (soundstagevr issue 34), App SpaceWarp (Meta's guide to it),
-/// and other lines of the same tags (GearVRf issue 383, Meta's guide to logcat), all but the first shortened.
-#[test]
-fn lines_of_metas_runtime_are_parsed() {
-    let mut reading = Reading::default();
-    let mut seconds = Vec::new();
-    for text in [
-        "11-12 18:46:09.356  3579  3669 I VrApi   : FPS=52,Prd=49ms,Tear=0,Early=0,Stale=65,VSnc=1,Lat=1,Fov=0D,CPU4/GPU=4/3,1478/490MHz,OC=FF,TA=0/0/0,SP=N/N/N,Mem=1555MHz,Free=3179MB,PSM=0,PLS=0,Temp=34.7C/0.0C,TW=1.17ms,App=21.69ms,GD=0.00ms,CPU&GPU=31.47ms,LCnt=1,GPU%=0.99,CPU%=0.29(W0.30),DSF=1.00",
-        "11-12 18:46:10.350  3579  3669 I VrApi   : FPS=36/72,Prd=39ms,Stale=0,Temp=44.5C/0.0C,App=11.42ms,LCnt=1",
-        "11-12 18:46:10.351  3579  3669 I VrApi   : ASW=72, Type=App E=-0.000/0.250,D=0.000/0.000",
-        "11-12 18:46:10.400  2072  2090 I XrPerformanceManager: SetClockLevels: Apply pending clock request change: 4,3 -> 3,3",
-        "11-12 18:46:10.500 24826 24826 I VrApi   : SetVrSystemPerformance( 2, 2 )",
-    ] {
-        if let LineContent::Sample(sample) = reading.line(text, None) {
-            seconds.push(*sample);
-        }
-    }
-    seconds.extend(reading.end());
-    let rates: Vec<_> = seconds.iter().map(|sample| (sample.fps, sample.refresh_hz, sample.gpu_ms)).collect();
-    assert_eq!(rates, [(Some(52.0), None, Some(21.69)), (Some(36.0), Some(72.0), Some(11.42))]);
-    assert_eq!((reading.damaged(), reading.faults()), (0, Vec::new()));
 }
 
 #[test]

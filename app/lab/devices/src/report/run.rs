@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::capture::{Capture, Fault, FaultKind, Outcome, Sample};
-use crate::phone::LEAST_MILLIVOLTS;
+use crate::reading::LEAST_MILLIVOLTS;
 use yoro_report::stats::median;
 
 /// Voltage that the paper uses to compute energy from battery percent.

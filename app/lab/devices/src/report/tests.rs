@@ -60,6 +60,12 @@ fn made_up(method: &str, scene: &str, repetition: u32, power: impl Fn(f64) -> f6
     Capture { samples: samples.collect(), info }
 }
 
+/// Makes up a pair of runs with these milliwatts: by the baseline, and by yoro.
+fn pair(scene: &str, repetition: u32, baseline: f64, ours: f64) -> [Capture; 2] {
+    [("conventional", baseline), ("yoro", ours)]
+        .map(|(method, milliwatts)| made_up(method, scene, repetition, |_| milliwatts))
+}
+
 fn run_of(capture: &Capture) -> Run {
     Run::of(capture, "folder".into(), 0, "device".into(), 1)
 }
@@ -221,11 +227,7 @@ fn implausible_power_is_named() {
 fn two_equal_pairs_have_no_scatter() {
     let pairs = |factor: f64| {
         [1, 2].map(|repetition| {
-            let noise = 1.0 + factor * f64::from(repetition);
-            [
-                made_up("conventional", "street", repetition, |_| 500.0),
-                made_up("yoro", "street", repetition, move |_| 400.0 * noise),
-            ]
+            pair("street", repetition, 500.0, 400.0 * (1.0 + factor * f64::from(repetition)))
         })
     };
     let same = report(pairs(0.0).concat());
@@ -314,14 +316,7 @@ fn changes_agree_with_scipy() {
     // SciPy 1.17.1: exp of ttest_1samp's mean and interval of the logarithms of a / b.
     let a = [364.06, 362.14, 366.09, 368.54, 371.17];
     let b = [501.55, 498.23, 497.07, 504.75, 509.19];
-    let pair = |i: usize| {
-        let repetition = i as u32 + 1;
-        [
-            made_up("yoro", "street", repetition, |_| a[i]),
-            made_up("conventional", "street", repetition, |_| b[i]),
-        ]
-    };
-    let report_of_pairs = report((0..5).flat_map(pair).collect());
+    let report_of_pairs = report((0..5).flat_map(|i| pair("street", i as u32 + 1, b[i], a[i])).collect());
     for scene in [Some("street"), None] {
         let power = difference(&report_of_pairs, scene, Quantity::Power);
         near(power.change, 100.0 * (0.7296513565581347 - 1.0), 1e-6);
@@ -338,8 +333,7 @@ fn changes_agree_with_scipy() {
     let mut captures = Vec::new();
     for (scene, logs) in groups {
         for (i, log) in logs.iter().enumerate() {
-            captures.push(made_up("yoro", scene, i as u32 + 1, |_| 500.0 * log.exp()));
-            captures.push(made_up("conventional", scene, i as u32 + 1, |_| 500.0));
+            captures.extend(pair(scene, i as u32 + 1, 500.0, 500.0 * log.exp()));
         }
     }
     let report = report(captures);
@@ -353,9 +347,7 @@ fn changes_agree_with_scipy() {
 
 #[test]
 fn without_repetitions_there_is_no_interval() {
-    let pair = |scene: &str, power: f64| {
-        [made_up("conventional", scene, 1, |_| 500.0), made_up("yoro", scene, 1, move |_| power)]
-    };
+    let pair = |scene: &str, power: f64| pair(scene, 1, 500.0, power);
     let one = report(pair("street", 400.0).to_vec());
     let power = difference(&one, None, Quantity::Power);
     near(power.change, -20.0, 1e-9);
@@ -407,15 +399,11 @@ fn pairs_need_a_partner_and_the_last_repetition_counts() {
 #[test]
 fn devices_are_averaged_but_never_with_simulated_ones() {
     let on = |serial: &str, simulated: bool, ratio: f64| {
-        let change = |mut capture: Capture| {
+        pair("street", 1, 500.0, 500.0 * ratio).map(|mut capture| {
             capture.info.device.serial = serial.into();
             capture.info.device.simulated = simulated;
             capture
-        };
-        [
-            change(made_up("conventional", "street", 1, |_| 500.0)),
-            change(made_up("yoro", "street", 1, move |_| 500.0 * ratio)),
-        ]
+        })
     };
     let report = report([on("A", false, 0.5), on("B", false, 2.0), on("C", true, 0.1)].concat());
     let names: Vec<&str> = report.devices.iter().map(|device| device.name.as_str()).collect();

@@ -9,28 +9,16 @@ use indicatif::ProgressBar;
 
 use crate::adb::{Device, DeviceError, quoted};
 use crate::capture::{DeviceInfo, Outcome, RunInfo, VERSION};
-use crate::external_app::Subject;
 use crate::held_settings::{HeldSettings, Wanted};
-use crate::phone::{self, PACKAGE};
+use crate::phone;
 use yoro_settings::Settings;
 
 pub(crate) use session::LOST_TIMEOUT_S;
 pub(crate) use session::capture;
 
-/// Another application that is measured in place of this project's.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Other {
-    /// The application's package and process.
-    pub subject: Subject,
-    /// The application's activity.
-    pub activity: String,
-}
-
 /// The plan of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The application that runs in place of this project's. If set, only the scene's name is used of the settings.
-    pub other: Option<Other>,
     /// The experiment that the run belongs to.
     pub experiment: Option<String>,
     /// Name of the method in tables.
@@ -54,11 +42,6 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Returns the package of the application.
-    pub fn package(&self) -> &str {
-        self.other.as_ref().map_or(PACKAGE, |other| &other.subject.package)
-    }
-
     /// Returns the seconds from the first frame to the end of the run.
     pub fn seconds(&self) -> f64 {
         self.warm_up_s + self.duration_s
@@ -66,9 +49,6 @@ impl Plan {
 
     /// Returns the settings that differ from the defaults, without those that every run has.
     pub(crate) fn own_settings(&self) -> BTreeMap<String, String> {
-        if let Some(other) = &self.other {
-            return BTreeMap::from([("package".into(), other.subject.package.clone())]);
-        }
         let defaults = Settings::default().pairs();
         let of_each = ["scene", "method", "duration", "auto-exit", "run"];
         let pairs = self.settings.pairs().into_iter();
@@ -106,16 +86,14 @@ pub(crate) struct Found {
     pub application: String,
 }
 
-/// Checks whether runs of an application can be made on a device.
+/// Checks whether runs can be made on a device.
 ///
 /// # Errors
 /// [`DeviceError`], also if the application is not installed, the battery saver is on, or the screen has a lock that
 /// only its owner can open.
-pub(crate) fn look(device: &Device, package: &str) -> Result<Found, DeviceError> {
-    let application = phone::version(device, package)?.ok_or_else(|| DeviceError::NotInstalled {
-        serial: device.serial().to_owned(),
-        package: package.into(),
-    })?;
+pub(crate) fn look(device: &Device) -> Result<Found, DeviceError> {
+    let application = phone::version(device)?
+        .ok_or_else(|| DeviceError::NotInstalled { serial: device.serial().to_owned() })?;
     if phone::saves_battery(device)? {
         return Err(DeviceError::Unfit(format!(
             "the battery saver of {} is on, which slows it down: turn it off (adb -s {} shell settings put global \
@@ -172,7 +150,7 @@ pub fn make(
     folder: &Path,
     bar: &ProgressBar,
 ) -> Result<RunInfo, DeviceError> {
-    let found = look(device, plan.package())?;
+    let found = look(device)?;
     if plan.power {
         refuse_charger(device)?;
     }

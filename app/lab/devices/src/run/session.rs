@@ -8,7 +8,6 @@ use indicatif::ProgressBar;
 use super::{Found, Plan, refuse_charger};
 use crate::adb::{Device, DeviceError, now, sleep};
 use crate::capture::{Fault, FaultKind, Outcome, RunInfo, Sample, Writer};
-use crate::external_app::ExternalApp;
 use crate::follow::{Event, Follower};
 use crate::held_settings::HeldSettings;
 use crate::phone;
@@ -55,22 +54,19 @@ pub(crate) fn capture(
     held.renew(device)?;
     let started_unix_s = now();
     let info = plan.info(found, started_unix_s, battery.celsius);
-    let subject = plan.other.as_ref().map(|other| other.subject.clone());
     let label = format!("r{}-{:x}", plan.order, (started_unix_s * 1e3) as u64);
     let mut session = Session {
         device,
         plan,
         bar,
         follower: Follower::new(device)?,
-        reading: Reading::new(subject.is_none().then(|| label.clone())),
-        external_app: subject.map(|subject| ExternalApp::new(device, subject)).transpose()?,
+        reading: Reading::new(Some(label.clone())),
         label,
         writer: Writer::create(folder, info)?,
         own_faults: Vec::new(),
         restarts: 0,
         heard_s: started_unix_s,
         silent_since_s: started_unix_s,
-        others_since_s: None,
         delay_s: 0.0,
         has_ended: false,
         refresh_is_told: false,
@@ -92,7 +88,7 @@ pub(crate) fn capture(
         Err(error) if !error.is_lost() => Err(error),
         _ => session.follow(),
     };
-    let stopped = phone::stop(device, plan.package());
+    let stopped = phone::stop(device);
     match outcome {
         Ok(outcome) => {
             session.renew_faults()?;
@@ -124,8 +120,6 @@ struct Session<'a> {
     bar: &'a ProgressBar,
     follower: Follower<'a>,
     reading: Reading,
-    /// Log lines and battery of another application, if one is measured.
-    external_app: Option<ExternalApp<'a>>,
     label: String,
     writer: Writer,
     /// Faults of the connection. The other faults come from the log.
@@ -135,8 +129,6 @@ struct Session<'a> {
     heard_s: f64,
     /// Start of the current silence: the last sample or the last start of the application.
     silent_since_s: f64,
-    /// Time since which all lines have come from other processes.
-    others_since_s: Option<f64>,
     /// Delay in seconds of the lines that the device kept while it was lost.
     delay_s: f64,
     /// True once the application has logged its summary.
@@ -152,12 +144,6 @@ impl Session<'_> {
             0 => 0.0,
             _ => self.reading.time_s() + now() - self.heard_s,
         };
-        self.others_since_s = None;
-        if let Some(other) = &self.plan.other {
-            self.bar.set_message("starting");
-            self.silent_since_s = now();
-            return phone::start_other(self.device, &other.subject.package, &other.activity);
-        }
         let left_s = self.plan.seconds() - passed_s + MARGIN_S;
         let settings = Settings {
             duration: Some(left_s.max(MARGIN_S) as f32),
@@ -179,11 +165,6 @@ impl Session<'_> {
             match self.follower.next(POLL_INTERVAL)? {
                 Event::Line(line) => {
                     if let Some(outcome) = self.line(&line)? {
-                        return Ok(outcome);
-                    }
-                    // With other applications writing to it, the log is never quiet.
-                    let alone = self.others_since_s.is_some_and(|since| now() - since >= SILENCE_S);
-                    if alone && let Some(outcome) = self.quiet()? {
                         return Ok(outcome);
                     }
                 }
@@ -208,15 +189,9 @@ impl Session<'_> {
         let now = now();
         let passed_s = now - self.heard_s + self.delay_s;
         let damaged = self.reading.damaged();
-        let is_own = self.external_app.as_mut().map_or(Ok(true), |app| app.accepts(line))?;
-        let news = if is_own { self.reading.line(line, Some(passed_s)) } else { LineContent::Other };
-        self.others_since_s = if is_own { None } else { self.others_since_s.or(Some(now)) };
-        let outcome = match news {
-            LineContent::Sample(mut sample) => {
+        let outcome = match self.reading.line(line, Some(passed_s)) {
+            LineContent::Sample(sample) => {
                 (self.heard_s, self.silent_since_s) = (now, now);
-                if let Some(app) = &mut self.external_app {
-                    app.complete(&mut sample, &mut self.reading)?;
-                }
                 self.compare_refresh(&sample)?;
                 self.writer.sample(&sample)?;
                 self.show(&sample);
@@ -236,8 +211,7 @@ impl Session<'_> {
             self.renew_faults()?;
         }
         let is_over = self.reading.time_s() >= self.plan.seconds() - MARGIN_S;
-        let has_ended = self.has_ended || self.external_app.is_some();
-        Ok(outcome.or_else(|| (is_over && has_ended).then_some(Outcome::Complete)))
+        Ok(outcome.or_else(|| (is_over && self.has_ended).then_some(Outcome::Complete)))
     }
 
     /// Compares the display's refresh rate with the requested one: a setting may be accepted without having an effect.
@@ -288,7 +262,7 @@ impl Session<'_> {
     }
 
     fn back(&mut self, seconds: f64, rebooted: bool) -> Result<(), DeviceError> {
-        (self.delay_s, self.others_since_s) = (seconds, None);
+        self.delay_s = seconds;
         let at_s = self.reading.time_s();
         if rebooted {
             let detail = "the device was started anew, and its log with it".into();
@@ -308,21 +282,17 @@ impl Session<'_> {
         if silent_s < SILENCE_S {
             return Ok(None);
         }
-        let running = match phone::processes(self.device, self.plan.package()) {
+        let running = match phone::runs(self.device) {
             // Usually the log ends too, but adb may also wait for the device silently.
             Err(error) if error.is_lost() => {
                 let outcome = Outcome::Interrupted { reason: error.to_string() };
                 return Ok((silent_s > LOST_TIMEOUT_S).then_some(outcome));
             }
-            answer => !answer?.is_empty(),
+            answer => answer?,
         };
         if running {
-            let what = match &self.external_app {
-                Some(_) => "Meta's runtime has logged no frame rate of the application (tag VrApi)",
-                None => "the application has said nothing",
-            };
             let reason = format!(
-                "{what} for {silent_s:.0} s: the screen may be off, something else in front, or another process logs"
+                "the application has said nothing for {silent_s:.0} s: the screen may be off, or something else in front"
             );
             return Ok((silent_s > START_TIMEOUT_S).then_some(Outcome::Failed { reason }));
         }
@@ -331,10 +301,6 @@ impl Session<'_> {
             return Ok(Some(Outcome::Complete));
         }
         self.restarts += 1;
-        if self.external_app.is_some() {
-            let detail = "the application had ended and was started anew".into();
-            self.fault(FaultKind::Restarted, self.reading.time_s(), detail)?;
-        }
         if self.restarts > RESTARTS {
             let reason = format!(
                 "the application ended {RESTARTS} times before its time: its last words are in the log"

@@ -233,21 +233,6 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_compare_is_refused() {
-        let ratings = |rows| Ratings { path: "made-up.csv".into(), rows };
-        let only = |method: &str| {
-            made_up(&[0.1, 0.2]).into_iter().filter(|r| r.method == method).collect::<Vec<_>>()
-        };
-        for (method, naming) in
-            [("yoro", "nobody has rated conventional"), ("conventional", "only conventional")]
-        {
-            let study = Study::new(&ratings(only(method)), "conventional", [1.0, 5.0], String::new());
-            let error = study.unwrap_err().to_string();
-            assert!(error.contains(naming) && error.contains("made-up.csv"), "{error}");
-        }
-    }
-
-    #[test]
     fn the_report_says_what_matters() {
         let study = study(made_up(&[0.2, -0.1, 0.4, 0.1, -0.3, 0.25]));
         let markdown = study.report().to_markdown();

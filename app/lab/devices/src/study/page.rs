@@ -100,7 +100,7 @@ fn table(study: &Study) -> Table {
             Cell::paper(None::<String>),
             Cell::paper(difference((low + high) / 2.0, Some(Interval { low, high }))),
         ];
-        table.push_grouped(cells, i == 0);
+        if i == 0 { table.push_first(cells) } else { table.push(cells) }
     }
     table.note = "The paper gives no means; its difference is the middle of its interval.".into();
     table

@@ -42,7 +42,7 @@ impl Subcommand for ListArgs {
 fn details(device: &Device) -> Result<String, DeviceError> {
     let info = phone::info(device)?;
     let battery = phone::battery(device)?;
-    let version = phone::version(device, phone::PACKAGE)?;
+    let version = phone::version(device)?;
     let name = format!("{} {}", info.manufacturer, info.model);
     let number = |value: Option<f64>, decimals: usize, unit: &str| {
         value.map_or("na".into(), |value| format!("{value:.decimals$} {unit}"))

@@ -9,31 +9,19 @@ use crate::cli::Subcommand;
 use crate::cli::args::{self, parse_positive};
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::Outcome;
-use yoro_devices::external_app::Subject;
 use yoro_devices::held_settings::Wanted;
-use yoro_devices::run::{self, Other, Plan};
+use yoro_devices::run::{self, Plan};
 use yoro_files::interrupt;
 use yoro_settings::Settings;
 
 /// Make one run: a method in a scene for a time, captured into a folder
 #[derive(clap::Args, Clone, Debug)]
 pub struct RunArgs {
-    /// A built-in scene, or one that was pushed onto the device [default: prototype]; with --package any name
+    /// A built-in scene, or one that was pushed onto the device [default: prototype]
     scene: Option<String>,
-    /// The stereo method [default: yoro]; with --package any name
+    /// The stereo method [default: yoro]
     #[arg(long)]
     method: Option<String>,
-    /// Another application on a Meta headset in place of yoro, started with its own settings: measures the runtime's
-    /// frame rates, and the battery, which this computer reads
-    #[arg(long, value_name = "PACKAGE", requires = "activity", requires = "method", requires = "scene",
-        conflicts_with_all = ["settings", "overrides"])]
-    package: Option<String>,
-    /// Its activity, such as .MainActivity
-    #[arg(long, requires = "package")]
-    activity: Option<String>,
-    /// The process that logs the frame rates [default: the package]
-    #[arg(long, value_name = "NAME", requires = "package")]
-    log_process: Option<String>,
     /// Number of the repetition: runs of the same number, scene and device are compared
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = args::whole::<u32>(1..=u32::MAX))]
     repetition: u32,
@@ -71,28 +59,13 @@ pub struct RunArgs {
 impl Subcommand for RunArgs {
     /// Makes the run on each device.
     fn run(&self) -> anyhow::Result<()> {
-        let other = self.package.as_ref().zip(self.activity.as_ref()).map(|(package, activity)| Other {
-            subject: Subject {
-                package: package.clone(),
-                process: self.log_process.as_ref().unwrap_or(package).clone(),
-            },
-            activity: activity.clone(),
-        });
-        let settings = match &other {
-            Some(_) => Settings { scene: self.scene.clone().unwrap_or_default(), ..Settings::default() },
-            None => {
-                let named = [("scene", &self.scene), ("method", &self.method)];
-                let named =
-                    named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
-                let overrides = self.overrides.iter().cloned().chain(named);
-                Settings::measured().changed(self.settings.as_deref(), overrides)?
-            }
-        };
-        let method = self.name.clone().or(self.method.clone().filter(|_| other.is_some()));
+        let named = [("scene", &self.scene), ("method", &self.method)];
+        let named = named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
+        let overrides = self.overrides.iter().cloned().chain(named);
+        let settings = Settings::measured().changed(self.settings.as_deref(), overrides)?;
         let plan = Plan {
-            other,
             experiment: None,
-            method: method.unwrap_or_else(|| settings.method.name().into()),
+            method: self.name.clone().unwrap_or_else(|| settings.method.name().into()),
             settings,
             repetition: self.repetition,
             order: 1,

@@ -118,12 +118,6 @@ impl Results {
             self.records.iter().filter(|r| matches!(r, Record::Round(end) if end.conditions == *conditions));
         ends.count() as u32
     }
-
-    /// True if a setting was left out, for example because it is too large for this machine. Then no contender was
-    /// measured, and the file gives the reason.
-    pub fn is_left_out(&self, conditions: &Conditions) -> bool {
-        self.rounds(conditions) > 0 && !self.measurements().any(|m| m.conditions == *conditions)
-    }
 }
 
 /// Reads the header, with a different error for each way in which the first line can be wrong.

@@ -4,12 +4,12 @@ use super::super::contender::Contender;
 use super::super::job::Source;
 use super::super::record::metric;
 use super::super::results::{CONVENTIONAL, SuiteData};
-use super::super::tables::{Sweep, cell, milliseconds, papers_entry, push_refusals};
+use super::super::tables::{Sweep, cell, milliseconds, push_refusals};
 use super::{COST, FrameSuite};
 use yoro_report::paper::PAPER;
 use yoro_report::stats::{geometric_mean, line_through, mean};
 use yoro_report::text::{fixed, short_count};
-use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
+use yoro_report::{Axis, Cell, Section, Table};
 
 /// The number of sizes, as in the paper, and in the short form.
 const SIZES: [usize; 2] = [9, 5];
@@ -35,33 +35,9 @@ pub(super) const COMPLEXITY: FrameSuite = FrameSuite {
             "Frame time against the number of triangles of one scene. The slope is the cost of another million triangles, \
              by least squares. Synthesis costs the same in every scene.",
         );
-        let x = || Axis::new("triangles, millions").from_zero();
-        let y = || Axis::new("frame time, ms").from_zero();
-        let mut ours = Plot::curves("Frame time here", x(), y()).caption("Medians on this machine.");
-        let mut papers = Plot::curves("The paper's frame time", x(), y())
-            .caption("Means over its devices, its own scene.");
-        let ratio = Axis::new("frame time / conventional").baseline(1.0);
-        let mut both = Plot::curves("Frame time over two full renders", x(), ratio)
-            .caption("The line is conventional rendering.");
-        for name in suite.measured(metric::FRAME_MS) {
-            ours.curve(Entry::ours(name), times(suite, name));
-            if name != CONVENTIONAL {
-                both.curve(Entry::ours(name), ratios(suite, name));
-            }
-        }
-        for (method, curve) in papers_times() {
-            papers.curve(papers_entry(method), curve.clone());
-            if method != CONVENTIONAL {
-                let over = curve.into_iter().zip(&PAPER.complexity[CONVENTIONAL]);
-                both.curve(papers_entry(method), over.map(|((x, ms), base)| (x, ms / base)));
-            }
-        }
-        section.plot(ours);
-        section.plot(papers);
-        section.plot(both);
+        let axis = Axis::new("triangles").from_zero();
+        Sweep { axis, text: |point| short_count(point as u64) }.show_times(&mut section, suite);
         section.table(slopes(suite));
-        let sweep = Sweep { axis: Axis::new("triangles"), text: |point| short_count(point as u64) };
-        section.table(sweep.table(suite, "Median frame time, ms", metric::FRAME_MS));
         vec![section]
     },
 };

@@ -11,7 +11,7 @@ use super::super::record::metric;
 use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
 use super::super::runner::{Runner, eye_image};
 use super::super::scenes::LazyObject;
-use super::super::tables::{MetricColumn, mark_scenes, means_table, scene_table};
+use super::super::tables::{MetricColumn, mark_scenes, means_table};
 use super::super::views;
 use yoro_files::interrupt;
 use yoro_metrics::FlickerMeter;
@@ -112,14 +112,6 @@ impl Experiment for Flicker {
             table.push_first(cells);
         }
         section.table(table);
-        let text = |setting: &SettingData, name: &str| {
-            let measured = setting.find(name)?;
-            let holes = fixed(measured.mean(metric::FLICKER_HOLES), 2).unwrap_or_else(|| "–".into());
-            Some(format!("{:.2} / {holes}", measured.mean(metric::FLICKER)?))
-        };
-        let mean = |name: &str| fixed(suite.mean(name, metric::FLICKER), 2);
-        let title = "Flicker of all pixels / in holes";
-        section.table(scene_table(suite, title, &contenders, text, mean, None));
         vec![section]
     }
 }

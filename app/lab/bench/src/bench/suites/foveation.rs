@@ -131,43 +131,34 @@ fn over(setting: &SettingData, name: &str, base: &str) -> Option<f64> {
 
 /// Returns the means over all scenes at one field of view.
 fn means(suite: &SuiteData, label: &str) -> Table {
-    let columns = [
-        "<levels",
-        "time over two full renders",
-        "over two alike",
-        "shaded",
-        "fovea",
-        "periphery",
-        "periphery, alike",
-        "near silhouettes, alike",
-        "flicker of the periphery, rendered eye",
-        "flicker of the periphery, synthesized eye",
+    let average = |name: &str, metric: &str| {
+        mean(suite.labelled(label).filter_map(|setting| setting.find(name)?.mean(metric)))
+    };
+    let quality = |name: &str, [psnr, ssim]: [&str; 2]| {
+        let ssim = average(name, ssim)?;
+        // Identical images have no finite PSNR.
+        Some(average(name, psnr).map_or_else(|| "equal".into(), |psnr| format!("{psnr:.2} / {ssim:.3}")))
+    };
+    let ratio = |name: &str, base: &str| {
+        fixed(geometric_mean(suite.labelled(label).filter_map(|setting| over(setting, name, base))), 2)
+    };
+    let [own, synthesized] = metric::PERIPHERY_FLICKER;
+    let columns: [(&str, &dyn Fn(&str) -> Option<String>); 9] = [
+        ("time over two full renders", &|name| ratio(name, CONVENTIONAL)),
+        ("over two alike", &|name| ratio(name, &alike(name)).filter(|_| name != MONO)),
+        ("shaded", &|name| fixed(average(name, metric::SHADED), 3)),
+        ("fovea", &|name| quality(name, metric::FOVEA)),
+        ("periphery", &|name| quality(name, metric::PERIPHERY)),
+        ("periphery, alike", &|name| quality(name, metric::ALIKE)),
+        ("near silhouettes, alike", &|name| quality(name, metric::SILHOUETTES)),
+        ("flicker of the periphery, rendered eye", &|name| fixed(average(name, own), 2)),
+        ("flicker of the periphery, synthesized eye", &|name| fixed(average(name, synthesized), 2)),
     ];
-    let mut table =
-        Table::new(format!("Means over the scenes at {label}: times, PSNR in dB / SSIM"), &columns);
+    let title = format!("Means over the scenes at {label}: times, PSNR in dB / SSIM");
+    let mut table = table_of(&title, &["<levels"], &columns.map(|(heading, _)| heading));
     for name in suite.contenders() {
-        let average = |metric: &str| mean(suite.labelled(label).filter_map(|s| s.find(name)?.mean(metric)));
-        let quality = |[psnr, ssim]: [&str; 2]| {
-            let ssim = average(ssim)?;
-            // Identical images have no finite PSNR.
-            Some(average(psnr).map_or_else(|| "equal".into(), |psnr| format!("{psnr:.2} / {ssim:.3}")))
-        };
-        let ratio =
-            |base: &str| fixed(geometric_mean(suite.labelled(label).filter_map(|s| over(s, name, base))), 2);
-        let mut cells = vec![Cell::plain(name)];
-        let own = [
-            ratio(CONVENTIONAL),
-            ratio(&alike(name)).filter(|_| name != MONO),
-            fixed(average(metric::SHADED), 3),
-            quality(metric::FOVEA),
-            quality(metric::PERIPHERY),
-            quality(metric::ALIKE),
-            quality(metric::SILHOUETTES),
-            fixed(average(metric::PERIPHERY_FLICKER[0]), 2),
-            fixed(average(metric::PERIPHERY_FLICKER[1]), 2),
-        ];
-        cells.extend(own.map(|text| cell(name, text)));
-        table.push(cells);
+        let cells = columns.iter().map(|(_, text)| cell(name, text(name)));
+        table.push([Cell::plain(name)].into_iter().chain(cells).collect());
     }
     table.note = "The same image near silhouettes is compared with a full render.".into();
     table

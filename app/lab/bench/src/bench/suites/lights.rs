@@ -3,11 +3,11 @@
 use super::super::contender::Contender;
 use super::super::record::metric;
 use super::super::results::{CONVENTIONAL, SettingData};
-use super::super::tables::{PapersColumn, mark_scenes, papers_entry, scene_table, time_details};
+use super::super::tables::{PapersColumn, mark_scenes, scene_table, time_details};
 use super::{COST, FrameSuite};
 use yoro_report::paper::{self, PAPER};
 use yoro_report::text::fixed;
-use yoro_report::{Axis, Entry, Plot, Section};
+use yoro_report::{Axis, Plot, Section};
 
 /// The number of lights: the paper has fewer than five.
 const FEW_LIGHTS: usize = 4;
@@ -30,26 +30,13 @@ pub(super) const LIGHTS: FrameSuite = FrameSuite {
              over scenes and devices only.",
         );
         let cost = |setting: &SettingData, name: &str| setting.cost(name).map(|cost| cost.median);
-        let papers: Vec<(&str, f64)> = PAPER
-            .few_lights
-            .iter()
-            .map(|(name, fps)| (name.as_str(), PAPER.few_lights[CONVENTIONAL] / fps))
-            .collect();
-        let others = suite.compared(metric::FRAME_MS);
         let title = "Frame time over two full renders";
         let plot = Plot::rows(title, Axis::new("frame time / conventional").baseline(1.0))
             .caption("The line is conventional rendering.");
-        let mut plot = mark_scenes(plot, suite, &others, cost, |_| Vec::new());
-        for name in others {
-            if let Some(cost) = suite.mean_cost(name) {
-                plot.mark("mean", Entry::ours(name), cost);
-            }
-        }
-        for (method, ratio) in papers.iter().filter(|(method, _)| *method != CONVENTIONAL) {
-            plot.mark("mean", papers_entry(method), *ratio);
-        }
-        section.plot(plot);
-        let means = papers.iter().map(|(method, ratio)| format!("{} {ratio:.2}", paper::system(method)));
+        section.plot(mark_scenes(plot, suite, &suite.compared(metric::FRAME_MS), cost, |_| Vec::new()));
+        let base = PAPER.few_lights[CONVENTIONAL];
+        let means =
+            PAPER.few_lights.iter().map(|(name, fps)| format!("{} {:.2}", paper::system(name), base / fps));
         let column = PapersColumn {
             title: "the paper's means",
             of_scene: |_| None,

@@ -23,17 +23,15 @@ use super::runner::Runner;
 use super::scenes::LazyObject;
 
 /// All experiments, in the order in which `all` runs them.
-pub const EXPERIMENTS: [&dyn Experiment; 15] = [
+pub const EXPERIMENTS: [&dyn Experiment; 13] = [
     &scenes::SCENES,
     &complexity::COMPLEXITY,
     &sweeps::STYLES,
     &sweeps::IPD,
     &sweeps::DISTANCE,
     &patchers::Patchers,
-    &sweeps::IMBUFFER,
     &lights::LIGHTS,
     &sweeps::RESOLUTION,
-    &sweeps::ANTI_ALIASING,
     &flicker::Flicker,
     &reprojection::Reprojection,
     &half_rate::HalfRate,

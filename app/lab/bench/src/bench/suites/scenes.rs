@@ -5,7 +5,7 @@ use super::super::record::{PassClock, metric};
 use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
 use super::super::tables::{
     MetricColumn, PapersColumn, QUALITY_PLOTS, QualityPlot, cell, mark_scenes, means_table, metric_table,
-    milliseconds, paper_scene, papers_entry, psnr_ssim, quality_of, scene_table, table_of, time_details,
+    milliseconds, paper_scene, psnr_ssim, quality_of, scene_table, table_of, time_details,
 };
 use super::{BOTH_WITH_PICTURES, FrameSuite};
 use yoro_report::paper::{PAPER, SYSTEMS};
@@ -52,14 +52,6 @@ fn frame_time(suite: &SuiteData) -> Section {
         .caption("Medians on this machine.");
     let median = |setting: &SettingData, name: &str| setting.find(name)?.median(metric::FRAME_MS);
     section.plot(mark_scenes(plot, suite, &contenders, median, |_| Vec::new()));
-    let mut plot = Plot::rows("The paper's frame time", Axis::new("frame time, ms").from_zero())
-        .caption("1000 / frames a second: means over its seven devices, on its own scenes.");
-    for scene in suite.settings.iter().filter_map(paper_scene) {
-        for (method, fps) in SYSTEMS.into_iter().zip(scene.fps) {
-            plot.mark(&scene.name, papers_entry(method), 1000.0 / fps);
-        }
-    }
-    section.plot(plot);
     let text = |setting: &SettingData, name: &str| match name {
         CONVENTIONAL => Some(format!("{} ms", milliseconds(median(setting, name)?))),
         name => fixed(cost(setting, name), 2),

@@ -2,11 +2,9 @@
 
 use super::super::contender::Contender;
 use super::super::job::Source;
-use super::super::tables::{Labels, Sweep};
-use super::{BOTH, BOTH_WITH_PICTURES, FrameSuite, QUALITY};
+use super::super::tables::{Sweep, show_styles};
+use super::{BOTH, FrameSuite, QUALITY};
 use yoro_assets::ShadingStyle;
-use yoro_render::MSAA;
-use yoro_render::stereo::Pipeline;
 use yoro_report::paper::{DISTANCE as PAPERS_DISTANCE, PAPER};
 use yoro_report::{Axis, Section};
 
@@ -26,14 +24,7 @@ pub(super) const STYLES: FrameSuite = FrameSuite {
             "Shading styles",
             "The same synthesis under five styles of shading. In the paper, each style is a separate scene.",
         );
-        let labels = Labels {
-            column: "<style",
-            title: "PSNR in dB / SSIM, means over the scenes",
-            details: "Every scene and style in full",
-            papers: Some(|label| PAPER.styles.get(label).copied()),
-            timed: false,
-        };
-        labels.show(&mut section, suite);
+        show_styles(&mut section, suite);
         vec![section]
     },
 };
@@ -88,35 +79,6 @@ pub(super) const DISTANCE: FrameSuite = FrameSuite {
     },
 };
 
-pub(super) const IMBUFFER: FrameSuite = FrameSuite {
-    name: "imbuffer",
-    about: "Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation",
-    measures: BOTH,
-    contenders: || {
-        let paper =
-            [Contender::Synthesized(Pipeline::Paper), Contender::PaperNearest, Contender::PaperStrict];
-        [&Contender::BASELINES[..], &paper].concat()
-    },
-    jobs: |suite, choices, _| {
-        choices.sweep(suite, choices.varied_scenes(), [1, 2, 4, 8, 16], |job, divisor| {
-            job.imbuffer = divisor;
-            job.conditions.point = Some(f64::from(divisor));
-        })
-    },
-    sections: |suite| {
-        let mut section = Section::new(
-            "ImBuffer",
-            "The paper's pipeline with a smaller ImBuffer: its width and height are the image's over the divisor, with \
-             and without linear interpolation.",
-        );
-        let axis = Axis::new("ImBuffer divisor").logarithmic();
-        let sweep = Sweep { axis, text: |point| format!("1/{point}") };
-        sweep.show_quality(&mut section, suite, &[]);
-        sweep.show_times(&mut section, suite);
-        vec![section]
-    },
-};
-
 pub(super) const RESOLUTION: FrameSuite = FrameSuite {
     name: "resolution",
     about: "Frame time and quality of every method from 512 to 2048 pixels per eye",
@@ -139,38 +101,6 @@ pub(super) const RESOLUTION: FrameSuite = FrameSuite {
         let sweep = Sweep { axis: Axis::new("width of an eye, pixels"), text: |point| format!("{point}") };
         sweep.show_times(&mut section, suite);
         sweep.show_quality(&mut section, suite, &[]);
-        vec![section]
-    },
-};
-
-pub(super) const ANTI_ALIASING: FrameSuite = FrameSuite {
-    name: "anti-aliasing",
-    about: "Quality and frame time with one, two and four samples per pixel",
-    measures: BOTH_WITH_PICTURES,
-    contenders: || [&Contender::BASELINES[..], &[Contender::Synthesized(Pipeline::Gather)]].concat(),
-    jobs: |suite, choices, _| {
-        choices.sweep(suite, choices.all_scenes(), MSAA, |job, samples| {
-            job.render.msaa = samples;
-            job.conditions.label = Some(match samples {
-                1 => "1 sample".to_owned(),
-                n => format!("{n} samples"),
-            });
-        })
-    },
-    sections: |suite| {
-        let mut section = Section::new(
-            "Anti-aliasing",
-            "Each synthesized eye against the same eye rendered with as many samples per pixel. Synthesis takes the mean \
-             colour and the nearest depth of each pixel's samples.",
-        );
-        let labels = Labels {
-            column: "<samples per pixel",
-            title: "PSNR in dB / SSIM / frame time over two renders, means over the scenes",
-            details: "Every scene in full",
-            papers: None,
-            timed: true,
-        };
-        labels.show(&mut section, suite);
         vec![section]
     },
 };

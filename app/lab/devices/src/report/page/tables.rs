@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::format::{NO_SCATTER, OVER_BLOCKS, change, change_interval, number, without_scatter};
 use super::{ALL_SCENES, simulated_mark};
 use crate::report::run::{COUNTER_TOLERANCE, PAPER_VOLTS};
-use crate::report::{CONFIDENCE, Device, DeviceReport, Difference, Note, Quantity, Run};
+use crate::report::{CONFIDENCE, Device, DeviceReport, Difference, Mean, Note, Quantity, Run};
 use yoro_report::paper::{self, PAPER, PaperDevice, PaperScene};
 use yoro_report::stats::unique;
 use yoro_report::{Cell, Table};
@@ -83,16 +83,21 @@ pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
 
 /// Returns the tables of a device, without empty ones.
 pub fn device_tables(report: &DeviceReport, device: &Device) -> Vec<Table> {
-    let mut tables = Vec::new();
-    for half in [FIRST_HALF, SECOND_HALF] {
-        tables.push(difference_table(report, device, half));
-    }
-    for half in [FIRST_HALF, SECOND_HALF] {
-        tables.push(mean_table(report, device, half));
-    }
+    let halves = [FIRST_HALF, SECOND_HALF];
+    let mut tables: Vec<Table> = halves.map(|half| difference_table(report, device, half)).into();
+    tables.extend(halves.map(|half| mean_table(report, device, half)));
     tables.push(power_table(report, device));
     tables.retain(|table| !table.lines.is_empty());
     tables
+}
+
+/// Returns a table with a row for each scene and method that has values, and their columns after that of a number.
+fn value_table(title: String, number: &str, columns: Vec<String>, rows: Vec<Option<Vec<Cell>>>) -> Table {
+    let first = ["<scene", "<method", number].map(str::to_owned);
+    let mut table = Table::new(title, &[first.to_vec(), columns].concat());
+    rows.into_iter().flatten().for_each(|cells| table.push(cells));
+    table.group();
+    table
 }
 
 fn names(quantities: [Quantity; 5]) -> String {
@@ -100,38 +105,30 @@ fn names(quantities: [Quantity; 5]) -> String {
 }
 
 fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantity; 5]) -> Table {
-    let mut columns = vec!["<scene".to_owned(), "<method".into(), "pairs".into()];
-    columns.extend(quantities.map(|quantity| quantity.name().to_owned()));
+    let mut columns = quantities.map(|quantity| quantity.name().to_owned()).to_vec();
     let with_paper = quantities.contains(&Quantity::Power);
     if with_paper {
-        columns.extend(["the paper's power".to_owned(), "the paper's frame rate".into()]);
+        columns.extend(["the paper's power", "the paper's frame rate"].map(str::to_owned));
     }
-    let title = format!("{}: change against {}: {}", device.name, report.baseline, names(quantities));
-    let mut table = Table::new(title, &columns);
-    let scenes = device.scenes.iter().map(|scene| Some(scene.as_str())).chain([None]);
-    for scene in scenes {
-        let mut first = true;
-        for method in device.methods.iter().filter(|method| **method != report.baseline) {
-            let find = |quantity| report.find(Some(&device.name), scene, method, quantity);
-            let pairs = quantities.iter().filter_map(|q| find(*q)).map(|d| d.pairs).max();
-            let Some(pairs) = pairs else { continue };
-            let mut cells = vec![
-                Cell::plain(scene.unwrap_or(ALL_SCENES)),
-                Cell::plain(method),
-                Cell::plain(pairs.to_string()),
-            ];
-            for quantity in quantities {
-                cells
-                    .push(Cell::ours(find(quantity).map(|d| format!("{}{}", change(d), change_interval(d)))));
-            }
-            if with_paper {
-                let papers = papers_changes(scene, method);
-                cells.push(Cell::paper(papers.as_ref().map(|papers| format!("{:+.1} %", papers.power))));
-                cells.push(Cell::paper(papers.map(|papers| format!("{:+.1} %", papers.fps))));
-            }
-            table.push_grouped(cells, std::mem::take(&mut first));
+    let row = |scene: Option<&str>, method: &String| {
+        let find = |quantity| report.find(Some(&device.name), scene, method, quantity);
+        let pairs = quantities.iter().filter_map(|q| find(*q)).map(|d| d.pairs).max()?;
+        let first = [scene.unwrap_or(ALL_SCENES).to_owned(), method.clone(), pairs.to_string()];
+        let mut cells = first.map(Cell::plain).to_vec();
+        let text = |d: &Difference| format!("{}{}", change(d), change_interval(d));
+        cells.extend(quantities.map(|quantity| Cell::ours(find(quantity).map(text))));
+        if with_paper {
+            let papers = papers_changes(scene, method).map(|papers| [papers.power, papers.fps]);
+            cells.extend([0, 1].map(|i| Cell::paper(papers.map(|papers| format!("{:+.1} %", papers[i])))));
         }
-    }
+        Some(cells)
+    };
+    let methods = || device.methods.iter().filter(|method| **method != report.baseline);
+    let scenes = device.scenes.iter().map(|scene| Some(scene.as_str())).chain([None]);
+    let rows = scenes.flat_map(|scene| methods().map(move |method| (scene, method)));
+    let title = format!("{}: change against {}: {}", device.name, report.baseline, names(quantities));
+    let mut table =
+        value_table(title, "pairs", columns, rows.map(|(scene, method)| row(scene, method)).collect());
     table.note = format!(
         "Geometric mean of the ratios of pairs of runs (same scene and repetition), in brackets its {:.0} % interval. \
          Temperatures and stale frames are compared as differences.",
@@ -169,45 +166,36 @@ pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<PapersChange>
 }
 
 fn mean_table(report: &DeviceReport, device: &Device, quantities: [Quantity; 5]) -> Table {
-    let mut columns = vec!["<scene".to_owned(), "<method".into(), "runs".into()];
-    columns.extend(quantities.map(|quantity| format!("{}, {}", quantity.name(), quantity.unit())));
-    let mut table = Table::new(format!("{}: {}", device.name, names(quantities)), &columns);
-    for scene in &device.scenes {
-        let mut first = true;
-        for method in &device.methods {
-            let of = |quantity: Quantity| {
-                report.means.iter().find(|mean| {
-                    mean.device == device.name
-                        && mean.scene == *scene
-                        && mean.method == *method
-                        && mean.quantity == quantity
-                })
-            };
-            let Some(runs) = quantities.iter().filter_map(|q| of(*q)).map(|mean| mean.sample.n).max() else {
-                continue;
-            };
-            let mut cells = vec![Cell::plain(scene), Cell::plain(method), Cell::plain(runs.to_string())];
-            for quantity in quantities {
-                let text = of(quantity).map(|mean| {
-                    let value = number(quantity, mean.sample.mean);
-                    match mean.interval {
-                        None => value,
-                        Some(interval) if without_scatter(interval.low, interval.high) => {
-                            format!("{value} [{NO_SCATTER}]")
-                        }
-                        Some(interval) => format!(
-                            "{value} ± {} [{}, {}]",
-                            number(quantity, mean.sample.std),
-                            number(quantity, interval.low),
-                            number(quantity, interval.high)
-                        ),
-                    }
-                });
-                cells.push(if *method == report.baseline { Cell::base(text) } else { Cell::ours(text) });
+    let text = |mean: &Mean| {
+        let [value, std] = [mean.sample.mean, mean.sample.std].map(|value| number(mean.quantity, value));
+        match mean.interval {
+            None => value,
+            Some(interval) if without_scatter(interval.low, interval.high) => {
+                format!("{value} [{NO_SCATTER}]")
             }
-            table.push_grouped(cells, std::mem::take(&mut first));
+            Some(interval) => {
+                let [low, high] = [interval.low, interval.high].map(|value| number(mean.quantity, value));
+                format!("{value} ± {std} [{low}, {high}]")
+            }
         }
-    }
+    };
+    let row = |scene: &String, method: &String| {
+        let is_here =
+            |mean: &&Mean| mean.device == device.name && mean.scene == *scene && mean.method == *method;
+        let of =
+            |quantity: Quantity| report.means.iter().filter(is_here).find(|mean| mean.quantity == quantity);
+        let runs = quantities.iter().filter_map(|q| of(*q)).map(|mean| mean.sample.n).max()?;
+        let mut cells = [scene.clone(), method.clone(), runs.to_string()].map(Cell::plain).to_vec();
+        let cell: fn(Option<String>) -> Cell =
+            if *method == report.baseline { Cell::base } else { Cell::ours };
+        cells.extend(quantities.map(|quantity| cell(of(quantity).map(text))));
+        Some(cells)
+    };
+    let rows = device.scenes.iter().flat_map(|scene| device.methods.iter().map(move |m| (scene, m)));
+    let columns = quantities.map(|quantity| format!("{}, {}", quantity.name(), quantity.unit()));
+    let title = format!("{}: {}", device.name, names(quantities));
+    let rows = rows.map(|(scene, method)| row(scene, method)).collect();
+    let mut table = value_table(title, "runs", columns.to_vec(), rows);
     table.note = format!(
         "Mean ± standard deviation of the runs [{:.0} % interval of the mean]; of a single run its value alone.",
         100.0 * CONFIDENCE
@@ -236,7 +224,6 @@ fn power_table(report: &DeviceReport, device: &Device) -> Table {
         (scene, method, run.set, run.repetition)
     };
     runs.sort_by_key(|run| place(run));
-    let mut scene = "";
     for run in runs {
         let milliwatts = |value: Option<f64>| value.map(|value| format!("{value:.0}"));
         let reasons: Vec<&str> = run.exclusions.iter().map(|exclusion| exclusion.name).collect();
@@ -257,9 +244,9 @@ fn power_table(report: &DeviceReport, device: &Device) -> Table {
             Cell::paper(milliwatts(run.by_level.map(|l| l.step_milliwatts))),
             Cell::plain(counts),
         ];
-        table.push_grouped(cells, run.scene != scene);
-        scene = &run.scene;
+        table.push(cells);
     }
+    table.group();
     table.note = format!(
         "The counter is read between its first and last step; more than {:.0} % apart from current x voltage over the \
          same time is named as a fault. A battery's level comes in whole percents: the paper's way cannot tell less \
