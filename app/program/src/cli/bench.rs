@@ -157,6 +157,7 @@ impl BenchArgs {
         };
         Choices {
             quick: self.quick,
+            times_passes: true,
             eyes,
             render: self.renderer.render_settings(),
             options: Rc::new(|pipeline| StereoOptions {

@@ -18,6 +18,7 @@ use yoro_bench::bench::{
 };
 use yoro_bench::inpaint::PatcherOptions;
 use yoro_bench::machine::Parameter;
+use yoro_files as files;
 use yoro_gl::Context;
 use yoro_render::stereo::{Method, Pipeline};
 use yoro_scenes::BUILTINS;
@@ -66,9 +67,16 @@ impl Subcommand for RunArgs {
         for method in &self.methods {
             choices.render.supports(*method, gl.capabilities())?;
         }
-        let results = self.measure(&choices, gl)?;
+        // A run that fails leaves the results of an earlier one.
+        files::create_folder(&self.out)?;
+        let work = tempfile::tempdir_in(&self.out)
+            .with_context(|| format!("nothing can be written into {}", self.out.display()))?;
+        let file = work.path().join("run.jsonl");
+        let results = self.measure(&choices, gl, &file)?;
         print!("{}", bench::text(&results));
         let page = BenchReport::new(vec![results])?.write(&self.out)?.page;
+        let kept = self.out.join("run.jsonl");
+        std::fs::rename(&file, &kept).with_context(|| format!("cannot write {}", kept.display()))?;
         println!("\npictures: {}", self.out.join("*.png").display());
         println!("report:   {}", page.display());
         Ok(())
@@ -77,31 +85,27 @@ impl Subcommand for RunArgs {
 
 impl RunArgs {
     /// Measures the suite of all scenes, the smallest of which comes first, so that there is something to look at soon.
-    fn measure(&self, choices: &Choices, gl: &Rc<Context>) -> anyhow::Result<Results> {
+    fn measure(&self, choices: &Choices, gl: &Rc<Context>, file: &Path) -> anyhow::Result<Results> {
         let object = LazyObject::new(Box::new(Object::hare));
         let suites = EXPERIMENTS.into_iter().filter(|suite| suite.name() == SUITE);
         let jobs: anyhow::Result<Vec<_>> = suites.map(|suite| suite.jobs(choices, &object)).collect();
         let mut jobs = jobs?.concat();
         jobs.sort_by_key(|job| kilo_triangles(&job.conditions.scene));
-        let file = self.out.join("run.jsonl");
-        if file.exists() {
-            std::fs::remove_file(&file).with_context(|| format!("cannot replace {}", file.display()))?;
-        }
         let parameters = self.parameters(choices);
-        let opened = Writer::open(&file, &header(vec![SUITE.into()], false, parameters, gl))?;
+        let opened = Writer::open(file, &header(vec![SUITE.into()], false, parameters, gl))?;
         let inputs =
             Inputs { choices, object: &object, path: None, patchers: PatcherOptions { model: None } };
         let bar = progress_bar(jobs.iter().map(|job| job.experiment.steps(job)).sum());
         let mut runner = Runner::new(gl, inputs, opened, bar.clone());
         for (i, job) in jobs.iter().enumerate() {
             runner.run(job)?;
-            let picture = self.save_pairs(&picture_folder(&file, &job.conditions), job)?;
+            let picture = self.save_pairs(&picture_folder(file, &job.conditions), job)?;
             if i == 0 {
                 bar.suspend(|| println!("the first picture: {}", picture.display()));
             }
         }
         bar.finish_and_clear();
-        Ok(Results::read(&file)?)
+        Ok(Results::read(file)?)
     }
 
     fn choices(&self) -> Choices {
@@ -113,6 +117,7 @@ impl RunArgs {
         let stereo = self.stereo.clone();
         Choices {
             quick: false,
+            times_passes: false,
             eyes: self.eyes.options(),
             render: self.renderer.render_settings(),
             options: Rc::new(move |pipeline| stereo.options(pipeline)),

@@ -47,7 +47,7 @@ pub(super) fn measure(
                 runner.save_picture(job, &picture_name(entry.contender), &images[0])?;
             }
         }
-        if cost {
+        if cost && runner.inputs.choices.times_passes {
             field.time_passes(runner, scene, &views, &mut round)?;
         }
         runner.finish(round)?;

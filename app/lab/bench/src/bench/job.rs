@@ -20,6 +20,8 @@ use yoro_scenes::BUILTINS;
 pub struct Choices {
     /// True for the short form.
     pub quick: bool,
+    /// True to time passes as well, in frames of their own.
+    pub times_passes: bool,
     /// The eyes, except where a suite varies them.
     pub eyes: EyeOptions,
     /// The renderer's settings, except where a suite varies them.

@@ -107,10 +107,21 @@ impl Subject {
         pair: &EyePair,
         frame: &mut StereoFrame,
     ) -> Result<FrameTime, StereoError> {
+        self.settle(scene, pair, frame)?;
+        self.render(scene, pair, frame)
+    }
+
+    /// Renders until the method is what it stays at this place.
+    fn settle(
+        &mut self,
+        scene: &mut PreparedScene,
+        pair: &EyePair,
+        frame: &mut StereoFrame,
+    ) -> Result<(), StereoError> {
         for _ in 0..if self.options.policy.is_some() { 2 } else { 0 } {
             self.render(scene, pair, frame)?;
         }
-        self.render(scene, pair, frame)
+        Ok(())
     }
 
     /// Renders a frame after settling, with a timer around each pass. Returns the passes' names in the order of their
@@ -125,7 +136,7 @@ impl Subject {
         pair: &EyePair,
         frame: &mut StereoFrame,
     ) -> Result<Vec<(&'static str, f64)>, StereoError> {
-        self.render_settled(scene, pair, frame)?;
+        self.settle(scene, pair, frame)?;
         self.gl.set_profiling(Profiling::Auto);
         let rendered = self.render(scene, pair, frame);
         let passes = self.gl.take_pass_times();
