@@ -159,15 +159,3 @@ fn command(system: &System, panic: Panic) -> anyhow::Result<Command> {
     }
     Ok(command)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_newest_libstdcxx_is_the_one_of_the_largest_number() {
-        let names = "libstdc++-9-dev\nlibstdc++-12-dev\nlibstdc++-13-dev-arm64-cross\nlibstdc++-11-pic\n";
-        assert_eq!(newest(names).as_deref(), Some("libstdc++-12-dev"));
-        assert_eq!(newest("libstdc++-arm-none-eabi-dev\n"), None);
-    }
-}

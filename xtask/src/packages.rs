@@ -161,16 +161,3 @@ pub fn write_launcher(launcher: &Path, text: &str) -> anyhow::Result<()> {
     fs::set_permissions(launcher, fs::Permissions::from_mode(0o755))
         .with_context(|| format!("{} cannot be written", launcher.display()))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn debian_itself_is_found_among_the_sources() {
-        let targets = "https://example.org/apt main\nhttp://example.com/debian-security/ main\n\
-                       http://example.com/debian/ contrib\nhttp://example.com/debian/ main\n";
-        assert_eq!(debian(targets), Some("http://example.com/debian/"));
-        assert_eq!(debian("http://example.com/ubuntu/ main\n"), None);
-    }
-}

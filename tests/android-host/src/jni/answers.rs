@@ -34,7 +34,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
     };
     Some(match member.name.as_str() {
         "<init>" => Value::Void,
-        "loadClass" | "forName" => Value::object(Object::class_of(&text(0)?.replace('.', "/"))),
+        "forName" => Value::object(Object::class_of(&text(0)?.replace('.', "/"))),
         "getName" if receiver.class == "java/lang/Class" => {
             Value::object(Object::string(&class.replace('/', ".")))
         }
@@ -49,7 +49,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         | "getDecorView"
         | "getWindowManager"
         | "getDefaultDisplay"
-        | "getDisplay"
         | "getMode"
         | "getAttributes"
         | "createChooser"
@@ -61,8 +60,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         | "setName"
         | "setSystemUiVisibility"
         | "setAttributes"
-        | "addFlags"
-        | "setFlags"
         | "hide"
         | "show"
             if member.signature.ends_with(")V") =>
@@ -127,7 +124,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             };
             Value::Object(crate::openxr::query(&text(0)?, columns))
         }
-        "getColumnIndex" | "moveToNext" | "getString" | "isNull" | "close"
+        "getColumnIndex" | "moveToNext" | "getString" | "close"
             if matches!(receiver.data, Data::Cursor(_)) =>
         {
             let Data::Cursor(cursor) = &receiver.data else { return None };
@@ -143,7 +140,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
                     Value::Boolean(cursor.moves.fetch_add(1, Ordering::AcqRel) < cursor.rows.len())
                 }
                 "getString" => Value::Object(cell(int(0)).map(|text| Object::string(text))),
-                "isNull" => Value::Boolean(cell(int(0)).is_none()),
                 _ => Value::Void,
             }
         }
