@@ -5,9 +5,7 @@ use anyhow::{Context, Result, bail, ensure};
 use goblin::elf::Elf;
 use goblin::elf::dynamic::{DF_TEXTREL, DT_REL};
 use goblin::elf::header::ET_DYN;
-use goblin::elf::program_header::{
-    PT_GNU_RELRO, PT_LOAD, PT_TLS, ProgramHeader, program_header64,
-};
+use goblin::elf::program_header::{PT_GNU_RELRO, PT_LOAD, PT_TLS, ProgramHeader, program_header64};
 use goblin::elf::section_header::SHN_UNDEF;
 use goblin::elf::sym::STB_WEAK;
 
@@ -97,7 +95,10 @@ impl<'a> Image<'a> {
         }
         let mut image = Self { file, symbols: Vec::new(), relocations: Vec::new(), elf };
         let has_other = [DT_REL].iter().chain(&PACKED).any(|tag| image.tag(*tag).is_some());
-        ensure!(!has_other, "it has packed relocations or some without addends, which the host does not read");
+        ensure!(
+            !has_other,
+            "it has packed relocations or some without addends, which the host does not read"
+        );
         image.symbols = image.read_symbols()?;
         image.relocations = image.read_relocations();
         Ok(image)

@@ -46,13 +46,8 @@ impl Item {
 
 static ITEMS: [Item; 15] = [
     item("the page", "WEB", "yoro-cli web::", page_can_be_built).built(|| web::build().and(this_program())),
-    item(
-        "the example of yoro-wgpu",
-        "WGPU_WEB",
-        "yoro-wgpu the_example_in_a_browser",
-        page_can_be_built,
-    )
-    .built(|| web::build_example().and(this_program())),
+    item("the example of yoro-wgpu", "WGPU_WEB", "yoro-wgpu the_example_in_a_browser", page_can_be_built)
+        .built(|| web::build_example().and(this_program())),
     item("the WebXR emulator", "WEBXR", "yoro-cli web::; yoro-three-tests headsets", web::emulator),
     item("three.js", "THREE", "yoro-three-tests ", web::three_modules),
     // The names of the program's tests do not show which of them open a page.
@@ -67,9 +62,8 @@ static ITEMS: [Item; 15] = [
     item("shader compilers for mobile GPUs", "SHADER_COMPILERS", "yoro-tests shader_cost::", || {
         Ok(Compilers::make()?.folder().to_owned())
     }),
-    item("the C library's package", "C_PACKAGE", "yoro-c the_package", package::fetch_users_tools).built(|| {
-        package::package(&[package::Target::Linux])?.pop().context("no package was made")
-    }),
+    item("the C library's package", "C_PACKAGE", "yoro-c the_package", package::fetch_users_tools)
+        .built(|| package::package(&[package::Target::Linux])?.pop().context("no package was made")),
     item("mono, for C#", "MONO", "yoro-c csharp_calls", setup::mono),
     item("the APK (cargo xtask doctor)", "APK", "yoro-android-host ", android::ready_for_tests)
         .built(android::apk_for_tests),
@@ -121,7 +115,8 @@ impl<'scope> Preparation<'scope> {
         // A few selected tests are not worth the wait for a browser, so they only use an installed one.
         let wanted = |item: &&Item| {
             programs.is_none_or(|programs| {
-                let mut tests = programs.iter().flat_map(|one| one.tests.iter().map(|test| (&one.package, test)));
+                let mut tests =
+                    programs.iter().flat_map(|one| one.tests.iter().map(|test| (&one.package, test)));
                 item.variable != "CHROMIUM" && tests.any(|(package, test)| item.is_for(package, test))
             })
         };

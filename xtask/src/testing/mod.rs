@@ -232,10 +232,14 @@ fn plan<'a>(programs: &'a [Program], options: &Options) -> Plan<'a> {
         let (equipped, first): (Vec<_>, Vec<_>) =
             beside.into_iter().partition(|test| equipment::is_needed(&program.package, test));
         let size = if program.is_integration { 1 } else { UNIT };
-        for (group, tests, size) in
-            [(&mut plan.first, first, size), (&mut plan.equipped, equipped, size), (&mut plan.alone, alone, 1)]
-        {
-            group.extend(tests.chunks(size).map(|tests| Job { program: Some(program), tests: tests.to_vec() }));
+        for (group, tests, size) in [
+            (&mut plan.first, first, size),
+            (&mut plan.equipped, equipped, size),
+            (&mut plan.alone, alone, 1),
+        ] {
+            group.extend(
+                tests.chunks(size).map(|tests| Job { program: Some(program), tests: tests.to_vec() }),
+            );
         }
     }
     plan

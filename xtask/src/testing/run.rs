@@ -51,7 +51,8 @@ impl<'a> Run<'a> {
 
     /// Adds what was prepared meanwhile.
     pub fn equip(&mut self, more: Equipment) {
-        self.phases.extend(more.seconds.into_iter().map(|(what, seconds)| (format!("  of it {what}"), seconds)));
+        self.phases
+            .extend(more.seconds.into_iter().map(|(what, seconds)| (format!("  of it {what}"), seconds)));
         self.equipment.items.extend(more.items);
     }
 

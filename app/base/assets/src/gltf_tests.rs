@@ -158,7 +158,8 @@ fn what_the_format_lets_out_may_be_left_out() {
     assert!(empty.refusal().contains("no triangle"));
     empty.root["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
     assert!(empty.refusal().contains("compressed by KHR_draco_mesh_compression"));
-    for root in [json!([]), json!({"scenes": 3, "animations": [1, {"channels": [2]}]}), json!({"meshes": {}})] {
+    for root in [json!([]), json!({"scenes": 3, "animations": [1, {"channels": [2]}]}), json!({"meshes": {}})]
+    {
         let file = File { root, ..File::new() };
         fs::write(file.folder.path().join("b.gltf"), file.root.to_string()).unwrap();
         let message = load(&file.folder.path().join("b.gltf")).unwrap_err().to_string();
@@ -268,7 +269,8 @@ fn vertex_colours_multiply_the_material() {
     let texture = &model.textures[m.diffuse_map.unwrap()];
     let [w, h] = texture.size.map(|s| s as f32);
     let texel = |uv: Vec2| (((1.0 - uv.y) * h) as usize * w as usize + (uv.x * w) as usize) * 4;
-    let shown = model.vertices.iter().map(|v| <[u8; 4]>::try_from(&texture.rgba[texel(v.uv)..][..4]).unwrap());
+    let shown =
+        model.vertices.iter().map(|v| <[u8; 4]>::try_from(&texture.rgba[texel(v.uv)..][..4]).unwrap());
     assert_eq!(Vec::from_iter(std::collections::BTreeSet::from_iter(shown)), [[255, 0, 0, 255], [255; 4]]);
     // White vertex colours are ignored. If there is a texture, it is drawn instead.
     file.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(white);

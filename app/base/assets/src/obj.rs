@@ -74,7 +74,8 @@ pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
     let painted: Vec<bool> = materials.iter().map(|m| coloured && m.diffuse_map.is_none()).collect();
     // A place near the first vertex if that is far from the origin.
     let first = models.iter().find_map(|model| model.mesh.positions.first_chunk()).copied().map(DVec3::from);
-    let subtracted = first.map(DVec3::round).filter(|p| p.is_finite() && p.length() > FAR).unwrap_or_default();
+    let subtracted =
+        first.map(DVec3::round).filter(|p| p.is_finite() && p.length() > FAR).unwrap_or_default();
     let mesh = |model: tobj::Model| {
         // The name is the index of the part.
         let part = model.name.parse::<usize>().ok().and_then(|i| input.parts.get(i))?;

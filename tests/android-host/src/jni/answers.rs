@@ -56,12 +56,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         | "getPackageManager"
         | "currentThread" => Value::object(Object::new(member.returned_class()?, Data::None)),
         "getApplicationContext" => Value::object(Object::new("android/app/Application", Data::None)),
-        "setContextClassLoader"
-        | "setName"
-        | "setSystemUiVisibility"
-        | "setAttributes"
-        | "hide"
-        | "show"
+        "setContextClassLoader" | "setName" | "setSystemUiVisibility" | "setAttributes" | "hide" | "show"
             if member.signature.ends_with(")V") =>
         {
             Value::Void

@@ -36,7 +36,8 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Document, Option<Vec<u
         |what: String| unusable(format!("this is not valid glTF 2.0 ({what}); export the model again"));
     let (text, blob) = if bytes.starts_with(b"glTF") {
         // The crate subtracts the header's size from this length unchecked.
-        let length = bytes.get(8..).and_then(|rest| rest.first_chunk()).map(|bytes| u32::from_le_bytes(*bytes));
+        let length =
+            bytes.get(8..).and_then(|rest| rest.first_chunk()).map(|bytes| u32::from_le_bytes(*bytes));
         if length.is_none_or(|length| length < 20) {
             return Err(unusable("the binary header is cut off; export the model again".into()));
         }
@@ -215,17 +216,7 @@ pub(super) fn data_uri(uri: &str) -> Option<Option<Vec<u8>>> {
 }
 
 fn percent_decoded(text: &str) -> Vec<u8> {
-    let bytes = text.as_bytes();
-    let mut out = Vec::with_capacity(bytes.len());
-    let mut i = 0;
-    while i < bytes.len() {
-        let code = (bytes[i] == b'%').then(|| bytes.get(i + 1..i + 3)).flatten();
-        let byte =
-            code.and_then(|c| std::str::from_utf8(c).ok()).and_then(|c| u8::from_str_radix(c, 16).ok());
-        out.push(byte.unwrap_or(bytes[i]));
-        i += if byte.is_some() { 3 } else { 1 };
-    }
-    out
+    percent_encoding::percent_decode_str(text).collect()
 }
 
 pub(super) fn external(path: &Path, uri: &str) -> Option<std::path::PathBuf> {
