@@ -36,16 +36,19 @@ const ALONE: [&str; 2] = [
 /// Number of unit tests per process. Each takes milliseconds, while an integration test takes seconds and has its own.
 const UNIT: usize = 60;
 
-/// Which tests to run, and how.
-#[derive(Clone, Debug, Default)]
+/// Set up, then run all tests
+#[derive(clap::Args, Clone, Debug, Default)]
 pub struct Options {
-    /// Run only tests whose names contain one of these.
+    /// Run only tests whose names contain one of these; tests in documentation only if no other test fits
     pub filters: Vec<String>,
-    /// Run only tests of these packages.
+    /// Run only the tests of these packages, without those in documentation
+    #[arg(long = "package", short, value_name = "NAME")]
     pub packages: Vec<String>,
-    /// Renew the golden images.
+    /// Renew the golden images of tests/golden instead of comparing with them
+    #[arg(long)]
     pub bless: bool,
-    /// Number of processes at a time. `None` means one per processor.
+    /// Run this many test processes at a time [default: one for each processor]
+    #[arg(long, value_name = "N")]
     pub jobs: Option<NonZeroUsize>,
 }
 
@@ -88,15 +91,18 @@ pub fn test(options: &Options) -> anyhow::Result<()> {
     apt::install_missing(|| vec![setup::cpp()], true)?;
     let is_all = options.filters.is_empty() && options.packages.is_empty();
     thread::scope(|scope| {
-        let programs;
-        let mut run = Run::default();
         let preparation = is_all.then(|| Preparation::begin(scope, None)).transpose()?;
-        programs = run.measure("compiling the tests", || compile(options))?;
+        let begin = Instant::now();
+        let programs = compile(options)?;
+        let mut run = Run::default();
+        run.add_phase("compiling the tests", begin);
         let mut preparation = match preparation {
             Some(preparation) => preparation,
             None => Preparation::begin(scope, Some(&programs))?,
         };
-        run.equipment = run.measure("waiting for the libraries", || preparation.libraries())?;
+        let begin = Instant::now();
+        run.equipment = preparation.libraries()?;
+        run.add_phase("waiting for the libraries", begin);
         let plan = plan(&programs, options);
         run.total = programs.iter().map(|program| program.tests.len()).sum();
         let workers =

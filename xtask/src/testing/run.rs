@@ -41,12 +41,9 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Does some work, and records its duration.
-    pub fn measure<T>(&mut self, what: &str, work: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
-        let result = work();
-        self.phases.push((what.to_owned(), start.elapsed().as_secs_f64()));
-        result
+    /// Records how long something has taken that began then.
+    pub fn add_phase(&mut self, what: &str, begin: Instant) {
+        self.phases.push((what.to_owned(), begin.elapsed().as_secs_f64()));
     }
 
     /// Adds what was prepared meanwhile.
@@ -100,7 +97,7 @@ impl<'a> Run<'a> {
             })
         })?;
         self.equipment = equipment;
-        self.phases.push((what.to_owned(), start.elapsed().as_secs_f64()));
+        self.add_phase(what, start);
         Ok(())
     }
 
