@@ -13,7 +13,7 @@ use anyhow::Context as _;
 use crate::apt::{self, Need};
 use crate::cargo;
 use crate::folders::{make_once, target_folder};
-use crate::packages::{self, PrivateApt, quoted, write_launcher};
+use crate::packages::{PrivateApt, quoted, write_launcher};
 use crate::rust::{Panic, Rust, build_std, source};
 
 /// Rust's name for the target.
@@ -80,16 +80,11 @@ impl System {
         let root = folder.join("root");
         make_once(folder, &format!("{} {LIBSTDCXX} {}\n", PACKAGES.join(" "), QEMU.join(" ")), || {
             let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], None)?;
-            for package in download(&apt)? {
-                // qemu's packages contain a program of several megabytes for each kind of processor.
-                let is_qemu =
-                    package.file_name().is_some_and(|name| name.to_string_lossy().starts_with("qemu-user"));
-                let only: &[&str] = if is_qemu { &["./usr/bin/qemu-aarch64*"] } else { &[] };
-                packages::unpack(&package, &root, only, &[])?;
-            }
-            // Remove the downloads, which take half of the space.
-            apt.remove();
-            Ok(())
+            let libstdcxx = newest(&apt.names(LIBSTDCXX)?);
+            let libstdcxx = libstdcxx.context("this distribution has no libstdc++-dev for the linker")?;
+            let mut packages: Vec<String> = PACKAGES.iter().map(|name| format!("{name}:arm64")).collect();
+            packages.extend([format!("{libstdcxx}:arm64"), "qemu-user-static:amd64".to_owned()]);
+            apt.unpack(&packages, &root, &[])
         })?;
         let qemu = QEMU.map(|name| root.join(name)).into_iter().find(|program| program.is_file());
         Ok(Self { qemu: qemu.context("qemu is not where Debian's packages have it")?, root })
@@ -102,16 +97,6 @@ impl System {
         let [unset, path, set, software, from] = fixed;
         [unset, path, set, software, from, self.root.clone().into()]
     }
-}
-
-/// Downloads the packages and their dependencies, and returns the files.
-fn download(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
-    apt.update()?;
-    let libstdcxx =
-        newest(&apt.names(LIBSTDCXX)?).context("this distribution has no libstdc++-dev for the linker")?;
-    let mut packages: Vec<String> = PACKAGES.iter().map(|name| format!("{name}:arm64")).collect();
-    packages.extend([format!("{libstdcxx}:arm64"), "qemu-user-static:amd64".to_owned()]);
-    apt.download(&packages)
 }
 
 /// Returns the `libstdc++-N-dev` with the largest number among package names, one per line.
@@ -158,16 +143,4 @@ fn command(system: &System, panic: Panic) -> anyhow::Result<Command> {
         command.env(format!("{variable}_{underscored}"), value);
     }
     Ok(command)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_newest_libstdcxx_is_the_one_of_the_largest_number() {
-        let names = "libstdc++-9-dev\nlibstdc++-12-dev\nlibstdc++-13-dev-arm64-cross\nlibstdc++-11-pic\n";
-        assert_eq!(newest(names).as_deref(), Some("libstdc++-12-dev"));
-        assert_eq!(newest("libstdc++-arm-none-eabi-dev\n"), None);
-    }
 }

@@ -119,22 +119,4 @@ mod tests {
         assert_eq!(fs::read_to_string(&file).unwrap(), "whole");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
-
-    #[test]
-    fn a_folder_is_made_once_for_each_recipe() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = folder.path().join("made");
-        let mut count = 0;
-        for recipe in ["a", "a", "b"] {
-            make_once(&at, recipe, || {
-                count += 1;
-                assert!(!at.join("content").exists());
-                write(&at.join("content"), recipe)
-            })
-            .unwrap();
-        }
-        assert_eq!((count, fs::read_to_string(at.join("content")).unwrap()), (2, "b".to_owned()));
-        make_once(&at, "c", || anyhow::bail!("no network")).unwrap_err();
-        assert!(!at.join("stamp").exists());
-    }
 }

@@ -26,7 +26,6 @@ mod site;
 mod testing;
 mod web;
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -58,38 +57,8 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
-    /// Set up, then run all tests
-    Test {
-        /// Run only tests whose names contain one of these; tests in documentation only if no other test fits
-        filters: Vec<String>,
-        /// Run only the tests of these packages, without those in documentation
-        #[arg(long = "package", short, value_name = "NAME")]
-        packages: Vec<String>,
-        /// Renew the golden images of tests/golden instead of comparing with them
-        #[arg(long)]
-        bless: bool,
-        /// Run this many test processes at a time [default: one for each processor]
-        #[arg(long, value_name = "N")]
-        jobs: Option<NonZeroUsize>,
-    },
-    /// Build, sign and check the Android application
-    Apk {
-        /// Build a small and fast release instead of a debuggable build
-        #[arg(long)]
-        release: bool,
-        /// Install missing packages (apt) without asking
-        #[arg(long)]
-        yes: bool,
-        /// Pack this libopenxr_loader.so into the APK; at most one for each processor
-        #[arg(long = "openxr-loader", value_name = "FILE")]
-        openxr_loaders: Vec<PathBuf>,
-        /// Make an application bundle (.aab) for a store, too
-        #[arg(long)]
-        bundle: bool,
-        /// Pack an APK for Meta's store, too
-        #[arg(long)]
-        quest: bool,
-    },
+    Test(testing::Options),
+    Apk(android::Options),
     /// Print what builds the Android application, what is missing, and how to get it
     Doctor,
     /// Check that Android will install and start an APK, or what a store makes of a bundle
@@ -185,11 +154,9 @@ fn perform(task: Task) -> anyhow::Result<bool> {
                 console::print(NEXT);
             }
         }
-        Task::Test { filters, packages, bless, jobs } => {
-            testing::test(&testing::Options { filters, packages, bless, jobs })?;
-        }
-        Task::Apk { release, yes, openxr_loaders, bundle, quest } => {
-            android::apk(&android::Options { release, yes, openxr_loaders, bundle, quest, quick: false })?;
+        Task::Test(options) => testing::test(&options)?,
+        Task::Apk(options) => {
+            android::apk(&options)?;
         }
         Task::Doctor => {
             let (text, complete) = android::doctor();

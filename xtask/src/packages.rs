@@ -20,8 +20,8 @@ pub struct PrivateApt {
 }
 
 impl PrivateApt {
-    /// Keeps all files in `folder`, which [`PrivateApt::remove`] removes. `sources` are lines of a sources.list that
-    /// replace this machine's.
+    /// Fetches the lists of packages. Keeps all files in `folder`, which [`PrivateApt::unpack`] removes. `sources` are lines
+    /// of a sources.list that replace this machine's.
     pub fn new(folder: PathBuf, architectures: &[&str], sources: Option<&str>) -> anyhow::Result<Self> {
         for tool in ["apt-get", "dpkg-deb", "tar"] {
             apt::find_program(tool)
@@ -37,7 +37,10 @@ impl PrivateApt {
         });
         let sources = sources.transpose()?;
         let architectures = architectures.iter().map(|&name| name.to_owned()).collect();
-        Ok(Self { folder, architectures, sources })
+        let apt = Self { folder, architectures, sources };
+        let _turn = apt::turn();
+        apt.get(&["update"])?;
+        Ok(apt)
     }
 
     fn command(&self, program: &str, arguments: &[&str]) -> Command {
@@ -71,12 +74,6 @@ impl PrivateApt {
         run(self.command("apt-get", &["--quiet=2"]).args(arguments)).map(drop)
     }
 
-    /// Fetches the lists of packages.
-    pub fn update(&self) -> anyhow::Result<()> {
-        let _turn = apt::turn();
-        self.get(&["update"])
-    }
-
     /// Returns the names of the packages that begin with `beginning`, one per line.
     pub fn names(&self, beginning: &str) -> anyhow::Result<String> {
         run(&mut self.command("apt-cache", &["pkgnames", beginning]))
@@ -91,9 +88,18 @@ impl PrivateApt {
         Ok(all.into_iter().filter(|(name, _)| name.ends_with(".deb")).map(|(_, path)| path).collect())
     }
 
-    /// Removes the downloads, which are not needed after unpacking.
-    pub fn remove(self) {
+    /// Downloads packages with their dependencies, and unpacks them into `root`, apart from the patterns `without`.
+    pub fn unpack(self, packages: &[String], root: &Path, without: &[&str]) -> anyhow::Result<()> {
+        for package in self.download(packages)? {
+            // qemu's packages contain a program of several megabytes for each kind of processor.
+            let name = package.file_name().unwrap_or_default().to_string_lossy();
+            let only: &[&str] =
+                if name.starts_with("qemu-user") { &["./usr/bin/qemu-aarch64*"] } else { &[] };
+            unpack(&package, root, only, without)?;
+        }
+        // The downloads take half of the space.
         fs::remove_dir_all(&self.folder).ok();
+        Ok(())
     }
 }
 
@@ -160,17 +166,4 @@ pub fn write_launcher(launcher: &Path, text: &str) -> anyhow::Result<()> {
     write(launcher, format!("#!/bin/sh\n{text}"))?;
     fs::set_permissions(launcher, fs::Permissions::from_mode(0o755))
         .with_context(|| format!("{} cannot be written", launcher.display()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn debian_itself_is_found_among_the_sources() {
-        let targets = "https://example.org/apt main\nhttp://example.com/debian-security/ main\n\
-                       http://example.com/debian/ contrib\nhttp://example.com/debian/ main\n";
-        assert_eq!(debian(targets), Some("http://example.com/debian/"));
-        assert_eq!(debian("http://example.com/ubuntu/ main\n"), None);
-    }
 }

@@ -154,36 +154,3 @@ fn version(text: &str) -> Option<(u32, u32)> {
     let mut parts = number.split('.');
     Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?))
 }
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use super::*;
-
-    fn rust(sysroot: &Path, version: (u32, u32)) -> Rust {
-        Rust { programs: sysroot.join("bin"), sysroot: sysroot.to_owned(), version }
-    }
-
-    #[test]
-    fn versions_are_read() {
-        assert_eq!(
-            version("rustc 1.96.0 (ac68faa20 2026-05-25) (built from a source tarball)"),
-            Some((1, 96))
-        );
-        assert_eq!(version("1.95"), Some((1, 95)));
-        assert_eq!(version("rustc unknown"), None);
-    }
-
-    #[test]
-    fn std_needs_a_source_and_a_new_rust() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = folder.path();
-        assert!(!rust(at, (9, 0)).has_source());
-        fs::create_dir_all(at.join("lib/rustlib/src/rust/library/std")).unwrap();
-        fs::write(at.join("lib/rustlib/src/rust/library/std/Cargo.toml"), "").unwrap();
-        assert!(rust(at, (9, 0)).has_source());
-        assert!(rust(at, (1, 95)).is_new_enough() && rust(at, (2, 0)).is_new_enough());
-        assert!(!rust(at, (1, 85)).is_new_enough());
-    }
-}

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 
 /// The parts of an APK that the host uses.
 pub struct Apk {
@@ -59,15 +59,7 @@ impl Apk {
                 None => libraries.push((name, bytes)),
             }
         }
-        if archive.by_name("AndroidManifest.xml").is_err() {
-            bail!("it has no AndroidManifest.xml");
-        }
-        if libraries.len() > 1 {
-            bail!(
-                "{folder} holds several libraries, and the host loads one: {}",
-                libraries.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
-            );
-        }
+        ensure!(libraries.len() < 2, "{folder} holds several libraries, and the host loads one");
         let library = libraries.pop().with_context(|| format!("it has no library in {folder}"))?;
         Ok(Self { library, assets })
     }

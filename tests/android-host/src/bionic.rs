@@ -43,10 +43,9 @@ const SAME_M: &str = "\
 pub fn exports() -> Vec<Export> {
     let mut all = exports![
         System::C, 1: [
-            __errno, __system_property_find, __system_property_get, __system_property_read_callback, _exit, abort, android_set_abort_message,
-            clock_gettime, clock_nanosleep, exit, gettimeofday, nanosleep, open, open64, openat, opendir, pthread_attr_destroy,
-            pthread_attr_getguardsize, pthread_attr_getstack, pthread_attr_init, pthread_attr_setguardsize, pthread_attr_setstacksize,
-            pthread_cond_timedwait, pthread_create, pthread_getattr_np, pthread_mutex_init, pthread_setname_np, strerror_r, syscall, sysconf, time, usleep,
+            __errno, __system_property_get, abort, android_set_abort_message, clock_gettime, clock_nanosleep, exit, open,
+            opendir, pthread_attr_destroy, pthread_attr_init, pthread_attr_setstacksize, pthread_create,
+            pthread_setname_np, strerror_r, syscall, sysconf,
         ];
         System::Dl, 1: [dl_iterate_phdr, dladdr, dlclose, dlerror, dlopen, dlsym];
     ];
@@ -111,10 +110,6 @@ extern "C" fn exit(code: c_int) -> ! {
     fatal(format!("the application called exit({code}): an activity ends by ANativeActivity_finish"))
 }
 
-extern "C" fn _exit(code: c_int) -> ! {
-    fatal(format!("the application called _exit({code}): an activity ends by ANativeActivity_finish"))
-}
-
 unsafe extern "C" fn android_set_abort_message(message: *const c_char) {
     // SAFETY: a terminated string by contract.
     host().log.set_abort_message(unsafe { text(message) });
@@ -174,11 +169,6 @@ unsafe extern "C" fn pthread_attr_init(attributes: Attributes) -> c_int {
     unsafe { libc::pthread_attr_init(new_attributes(attributes)) }
 }
 
-unsafe extern "C" fn pthread_getattr_np(thread: libc::pthread_t, attributes: Attributes) -> c_int {
-    // SAFETY: the caller gives room for the new object, and a live thread.
-    unsafe { libc::pthread_getattr_np(thread, new_attributes(attributes)) }
-}
-
 unsafe extern "C" fn pthread_attr_destroy(attributes: Attributes) -> c_int {
     // SAFETY: made by one of the two functions above, and not destroyed before.
     unsafe {
@@ -188,28 +178,9 @@ unsafe extern "C" fn pthread_attr_destroy(attributes: Attributes) -> c_int {
     }
 }
 
-unsafe extern "C" fn pthread_attr_getguardsize(attributes: Attributes, size: *mut usize) -> c_int {
-    // SAFETY: attributes that were made, and room for a size.
-    unsafe { libc::pthread_attr_getguardsize(*attributes, size) }
-}
-
-unsafe extern "C" fn pthread_attr_setguardsize(attributes: Attributes, size: usize) -> c_int {
-    // SAFETY: attributes that were made.
-    unsafe { libc::pthread_attr_setguardsize(*attributes, size) }
-}
-
 unsafe extern "C" fn pthread_attr_setstacksize(attributes: Attributes, size: usize) -> c_int {
     // SAFETY: attributes that were made.
     unsafe { libc::pthread_attr_setstacksize(*attributes, size) }
-}
-
-unsafe extern "C" fn pthread_attr_getstack(
-    attributes: Attributes,
-    start: *mut *mut c_void,
-    size: *mut usize,
-) -> c_int {
-    // SAFETY: attributes that were made, and room for both results.
-    unsafe { libc::pthread_attr_getstack(*attributes, start, size) }
 }
 
 unsafe extern "C" fn pthread_create(
@@ -222,21 +193,6 @@ unsafe extern "C" fn pthread_create(
     unsafe {
         let attributes = if attributes.is_null() { std::ptr::null() } else { (*attributes).cast_const() };
         libc::pthread_create(thread, attributes, start, argument)
-    }
-}
-
-/// The application reserves 40 bytes for a `pthread_mutex_t`. glibc's has 48 on arm64, of which it uses 40; but this
-/// function of glibc clears all of them.
-unsafe extern "C" fn pthread_mutex_init(
-    mutex: *mut [u64; 5],
-    attributes: *const libc::pthread_mutexattr_t,
-) -> c_int {
-    let mut new = libc::PTHREAD_MUTEX_INITIALIZER;
-    // SAFETY: the attributes are glibc's or null. A mutex may be moved as long as nobody uses it.
-    unsafe {
-        let result = libc::pthread_mutex_init(&raw mut new, attributes);
-        mutex.write((&raw const new).cast::<[u64; 5]>().read());
-        result
     }
 }
 
@@ -264,20 +220,6 @@ unsafe extern "C" fn open(path: *const c_char, flags: c_int, mode: c_uint) -> c_
     }
     // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
     unsafe { libc::open(path, flags, mode) }
-}
-
-unsafe extern "C" fn open64(path: *const c_char, flags: c_int, mode: c_uint) -> c_int {
-    // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
-    unsafe { open(path, flags, mode) }
-}
-
-unsafe extern "C" fn openat(folder: c_int, path: *const c_char, flags: c_int, mode: c_uint) -> c_int {
-    if is_closed(path) {
-        set_errno(libc::EACCES);
-        return -1;
-    }
-    // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
-    unsafe { libc::openat(folder, path, flags, mode) }
 }
 
 unsafe extern "C" fn opendir(path: *const c_char) -> *mut libc::DIR {
@@ -323,27 +265,6 @@ unsafe extern "C" fn clock_gettime(clock: c_int, time: *mut libc::timespec) -> c
     }
 }
 
-unsafe extern "C" fn gettimeofday(time: *mut libc::timeval, _zone: *mut c_void) -> c_int {
-    let now = host().clock.realtime();
-    // SAFETY: the caller gives room for one timeval.
-    unsafe {
-        time.write(libc::timeval {
-            tv_sec: (now / 1_000_000_000) as _,
-            tv_usec: (now % 1_000_000_000 / 1000) as _,
-        })
-    };
-    0
-}
-
-unsafe extern "C" fn time(seconds: *mut i64) -> i64 {
-    let now = (host().clock.realtime() / 1_000_000_000) as i64;
-    if !seconds.is_null() {
-        // SAFETY: not null, so the caller gives room for one time_t.
-        unsafe { seconds.write(now) };
-    }
-    now
-}
-
 /// Interval in real time at which the virtual clock is checked.
 const SLICE: Duration = Duration::from_millis(1);
 
@@ -355,20 +276,9 @@ fn sleep_until(deadline: u64) {
     }
 }
 
-unsafe extern "C" fn nanosleep(time: *const libc::timespec, _rest: *mut libc::timespec) -> c_int {
-    // SAFETY: the caller gives a timespec.
-    sleep_until(host().clock.now() + nanoseconds(unsafe { &*time }));
-    0
-}
-
 /// Sleeps for a virtual time in seconds.
 pub fn sleep(seconds: f64) {
     sleep_until(host().clock.now() + (seconds * 1e9) as u64);
-}
-
-extern "C" fn usleep(microseconds: c_uint) -> c_int {
-    sleep_until(host().clock.now() + u64::from(microseconds) * 1000);
-    0
 }
 
 unsafe extern "C" fn clock_nanosleep(
@@ -409,30 +319,6 @@ fn real_deadline(clock: c_int, slice: Duration) -> libc::timespec {
     // SAFETY: room for one timespec.
     unsafe { libc::clock_gettime(clock, &raw mut now) };
     timespec(nanoseconds(&now) + slice.as_nanos() as u64)
-}
-
-/// Deadlines are on CLOCK_REALTIME unless the condition variable was set to another clock, which cannot be queried.
-unsafe extern "C" fn pthread_cond_timedwait(
-    condition: *mut libc::pthread_cond_t,
-    mutex: *mut libc::pthread_mutex_t,
-    deadline: *const libc::timespec,
-) -> c_int {
-    // SAFETY: the caller gives a timespec.
-    let deadline = nanoseconds(unsafe { &*deadline });
-    // Times of the two clocks are decades apart, so the value shows which clock is meant.
-    let monotonic = deadline < host().clock.realtime() / 2;
-    let (clock, virtual_deadline) = if monotonic {
-        (libc::CLOCK_MONOTONIC, deadline)
-    } else {
-        (libc::CLOCK_REALTIME, host().clock.monotonic_of(deadline))
-    };
-    timed_wait(virtual_deadline, |slice| {
-        let until = real_deadline(clock, slice);
-        // SAFETY: the caller's condition variable and locked mutex.
-        let result = unsafe { libc::pthread_cond_timedwait(condition, mutex, &raw const until) };
-        (result != libc::ETIMEDOUT).then_some(result)
-    })
-    .unwrap_or(libc::ETIMEDOUT)
 }
 
 /// std's mutexes, condition variables and parked threads use futexes, whose deadlines are on the virtual clock.
@@ -502,29 +388,6 @@ unsafe extern "C" fn __system_property_get(name: *const c_char, value: *mut c_ch
     length as c_int
 }
 
-/// A `prop_info` is a terminated name. It is never freed, as on Android.
-unsafe extern "C" fn __system_property_find(name: *const c_char) -> *const c_char {
-    // SAFETY: a terminated name.
-    let name = unsafe { text(name) };
-    if property(&name).is_empty() {
-        return std::ptr::null();
-    }
-    CString::new(name).map_or(std::ptr::null(), |name| name.into_raw())
-}
-
-type ReadProperty =
-    extern "C" fn(cookie: *mut c_void, name: *const c_char, value: *const c_char, serial: u32);
-
-unsafe extern "C" fn __system_property_read_callback(
-    info: *const c_char,
-    callback: ReadProperty,
-    cookie: *mut c_void,
-) {
-    // SAFETY: `info` came from `__system_property_find`.
-    let value = CString::new(property(&unsafe { text(info) })).unwrap_or_default();
-    callback(cookie, info, value.as_ptr(), 0);
-}
-
 // libdl
 
 thread_local! {
@@ -548,7 +411,7 @@ unsafe extern "C" fn dlopen(path: *const c_char, _flags: c_int) -> *mut c_void {
     if let Some(library) = openxr::open(&name).or_else(|| loader::open(&name)) {
         return library;
     }
-    match System::ALL.iter().position(|library| library.name() == name) {
+    match System::ALL.iter().position(|library| library.0 == name) {
         Some(index) => (index + 1) as *mut c_void,
         None => {
             dl_error(format!("dlopen failed: library \"{name}\" not found"));

@@ -26,15 +26,8 @@ extern "C" fn crashed(signal: c_int, information: *mut libc::siginfo_t, context:
     unsafe { libc::alarm(10) };
     // SAFETY: the kernel passes both pointers to a handler installed with SA_SIGINFO.
     let (address, counter) = unsafe { ((*information).si_addr() as usize, program_counter(context)) };
-    let name = match signal {
-        libc::SIGSEGV => "SIGSEGV",
-        libc::SIGBUS => "SIGBUS",
-        libc::SIGILL => "SIGILL",
-        libc::SIGFPE => "SIGFPE",
-        _ => "SIGABRT",
-    };
     fatal(format!(
-        "{name} at address {address:#x} in thread {}, {}",
+        "signal {signal} at address {address:#x} in thread {}, {}",
         thread_name(),
         in_library(counter).map_or_else(
             || format!("outside of the package's libraries (pc {counter:#x})"),

@@ -3,32 +3,23 @@
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-/// A library of the public NDK.
+/// A library of the public NDK, by its file name, as used in DT_NEEDED and `dlopen`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum System {
-    /// libc.so
-    C,
-    /// libm.so
-    M,
-    /// libdl.so
-    Dl,
-    /// liblog.so
-    Log,
-    /// libandroid.so
-    Android,
-    /// libEGL.so
-    Egl,
-    /// libGLESv2.so
-    GlesV2,
-    /// libGLESv3.so
-    GlesV3,
-    /// libcamera2ndk.so
-    Camera,
-    /// libmediandk.so
-    Media,
-}
+pub struct System(pub &'static str);
 
+#[expect(non_upper_case_globals, reason = "they read as the variants of an enum")]
 impl System {
+    pub const C: Self = Self("libc.so");
+    pub const M: Self = Self("libm.so");
+    pub const Dl: Self = Self("libdl.so");
+    pub const Log: Self = Self("liblog.so");
+    pub const Android: Self = Self("libandroid.so");
+    pub const Egl: Self = Self("libEGL.so");
+    pub const GlesV2: Self = Self("libGLESv2.so");
+    pub const GlesV3: Self = Self("libGLESv3.so");
+    pub const Camera: Self = Self("libcamera2ndk.so");
+    pub const Media: Self = Self("libmediandk.so");
+
     /// All of the libraries.
     pub const ALL: [Self; 10] = [
         Self::C,
@@ -43,25 +34,9 @@ impl System {
         Self::Media,
     ];
 
-    /// Returns the file name, as used in DT_NEEDED and `dlopen`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::C => "libc.so",
-            Self::M => "libm.so",
-            Self::Dl => "libdl.so",
-            Self::Log => "liblog.so",
-            Self::Android => "libandroid.so",
-            Self::Egl => "libEGL.so",
-            Self::GlesV2 => "libGLESv2.so",
-            Self::GlesV3 => "libGLESv3.so",
-            Self::Camera => "libcamera2ndk.so",
-            Self::Media => "libmediandk.so",
-        }
-    }
-
     /// Returns the library with this file name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|library| library.name() == name)
+        Self::ALL.into_iter().find(|library| library.0 == name)
     }
 }
 
@@ -118,7 +93,7 @@ fn table() -> &'static HashMap<(System, &'static str), Export> {
 
 /// Returns the address of a function that `library` exports on a device with API level `sdk`.
 pub fn find(library: System, name: &str, sdk: i32) -> Option<usize> {
-    if matches!(library, System::GlesV2 | System::GlesV3) {
+    if [System::GlesV2, System::GlesV3].contains(&library) {
         return crate::graphics::gl::function(name);
     }
     table().get(&(library, name)).filter(|export| export.since <= sdk).map(|export| export.address)

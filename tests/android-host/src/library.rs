@@ -156,7 +156,7 @@ fn bind(
         } else if let Some(address) = needed.iter().find_map(finds) {
             values[index] = address;
         } else if let Some(library) = System::ALL.into_iter().find(|library| finds(library).is_some()) {
-            bail!("{} comes from {}, which the library does not name as needed", symbol.name, library.name());
+            bail!("{} comes from {}, which the library does not name as needed", symbol.name, library.0);
         } else if !symbol.weak {
             missing.push(index);
         }

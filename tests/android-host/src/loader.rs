@@ -33,7 +33,6 @@ struct Manifest {
 struct ApiLayer {
     name: String,
     library_path: String,
-    implementation_version: String,
     #[serde(default)]
     instance_extensions: Vec<Extension>,
 }
@@ -223,22 +222,13 @@ unsafe fn answer<T: Copy>(all: &[T], capacity: u32, count: *mut u32, place: *mut
     sys::Result::SUCCESS
 }
 
+/// The application looks this function up, and never calls it.
 unsafe extern "system" fn enumerate_api_layer_properties(
-    capacity: u32,
-    count: *mut u32,
-    properties: *mut sys::ApiLayerProperties,
+    _: u32,
+    _: *mut u32,
+    _: *mut sys::ApiLayerProperties,
 ) -> sys::Result {
-    let manifest = &layer().manifest;
-    let one = sys::ApiLayerProperties {
-        ty: sys::ApiLayerProperties::TYPE,
-        next: std::ptr::null_mut(),
-        layer_name: characters(&manifest.name),
-        spec_version: sys::CURRENT_API_VERSION,
-        layer_version: manifest.implementation_version.parse().unwrap_or(0),
-        description: characters(""),
-    };
-    // SAFETY: the application's call is passed on.
-    unsafe { answer(&[one], capacity, count, properties) }
+    sys::Result::ERROR_FUNCTION_UNSUPPORTED
 }
 
 /// Lists the runtime's extensions and those that the layer adds. The application never asks for a single layer's.

@@ -1,58 +1,14 @@
-//! The threads of this process: whether they make progress, and whether they are at rest.
+//! The threads of this process: whether they are at rest.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Number of checks in which a thread must be asleep.
 const LOOKS: u32 = 4;
 /// Time between two checks.
 const PAUSE: Duration = Duration::from_millis(2);
-
-/// Real time that a step or a callback of the activity may take without progress.
-const PATIENCE: Duration = Duration::from_secs(60);
-/// Minimum processor time that counts as progress. On a busy machine, especially under qemu, a frame may take minutes,
-/// so real time alone does not show that a process hangs.
-const MIN_PROGRESS: Duration = Duration::from_millis(1200);
-/// Maximum processor time. A process that uses more is in an endless loop.
-const MAX_PROCESSOR_TIME: Duration = Duration::from_secs(1200);
-
-/// The progress of something that must end.
-pub struct Progress {
-    /// Processor time of the process at the beginning.
-    begun: Duration,
-    /// When the process last made progress, and its processor time then.
-    moved: (Instant, Duration),
-}
-
-impl Progress {
-    /// Starts now, with this processor time of the process.
-    pub fn new(now: Instant, spent: Duration) -> Progress {
-        Progress { begun: spent, moved: (now, spent) }
-    }
-
-    /// Returns the reason for giving up, if there is one.
-    pub fn given_up(&mut self, now: Instant, spent: Duration) -> Option<String> {
-        let used = spent.saturating_sub(self.begun);
-        if used > MAX_PROCESSOR_TIME {
-            return Some(format!("has used {:.0} s of processor time", used.as_secs_f64()));
-        }
-        if spent.saturating_sub(self.moved.1) > MIN_PROGRESS {
-            self.moved = (now, spent);
-        }
-        let still = now.saturating_duration_since(self.moved.0);
-        (still > PATIENCE).then(|| format!("has stood still for {:.0} s", still.as_secs_f64()))
-    }
-}
-
-/// Returns the processor time of all threads since the process began.
-pub fn processor_time() -> Duration {
-    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: writes to the structure.
-    unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &raw mut time) };
-    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
-}
 
 /// Returns the name and the state of a thread: R if it is running or ready, S if it sleeps.
 fn state(task: &Path) -> Option<(String, char)> {
@@ -102,52 +58,4 @@ pub fn list() -> String {
         .map(|(name, count)| if count > 1 { format!("{count}x {name}") } else { name })
         .collect();
     format!("threads: {}", list.join(", "))
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::mpsc::RecvTimeoutError;
-
-    use super::*;
-
-    #[test]
-    fn a_step_hangs_when_it_stands_still_or_runs_in_circles_and_not_when_it_is_slow() {
-        let start = Instant::now();
-        let seconds = Duration::from_secs_f64;
-        // Returns when and why the run gives up on a process with this share of a processor.
-        let given_up = |share: f64| {
-            let mut progress = Progress::new(start, seconds(5.0));
-            (0..40_000).find_map(|second| {
-                let (now, spent) = (seconds(f64::from(second)), seconds(5.0 + share * f64::from(second)));
-                progress.given_up(start + now, spent).map(|reason| (second, reason))
-            })
-        };
-        assert_eq!(given_up(0.0), Some((61, "has stood still for 61 s".into())));
-        assert_eq!(given_up(0.0001), Some((61, "has stood still for 61 s".into())));
-        assert_eq!(given_up(0.025), None, "1200 s of processor time take 48000 s");
-        assert_eq!(given_up(0.1), Some((12_001, "has used 1200 s of processor time".into())));
-    }
-
-    #[test]
-    fn a_thread_that_ends_by_itself_is_waited_for() {
-        let count = || std::fs::read_dir("/proc/self/task").unwrap().count();
-        // This thread wakes often, but does not end.
-        let (stop, stopped) = std::sync::mpsc::channel::<()>();
-        let waker = std::thread::spawn(move || {
-            while stopped.recv_timeout(Duration::from_micros(100)) == Err(RecvTimeoutError::Timeout) {}
-        });
-        rest();
-        let before = count();
-        for _ in 0..20 {
-            let working = std::thread::spawn(|| {
-                let start = Instant::now();
-                while start.elapsed() < Duration::from_millis(5) {}
-            });
-            drop(working);
-            rest();
-            assert_eq!(count(), before);
-        }
-        drop(stop);
-        waker.join().unwrap();
-    }
 }

@@ -120,6 +120,9 @@ fn boots_to_the_first_frame() {
     }
     assert!(asked("work duration") + 2 >= *frames, "{requests:?} in {frames} frames");
     assert!(run.summary.log_of("YORO").any(|text| text == "Android says when a frame is seen"));
+    // Why it is no headset.
+    assert_display(&run, "no broker at org.khronos.openxr.runtime_broker");
+    assert_display(&run, "Cardboard");
 }
 
 #[test]
@@ -597,16 +600,6 @@ fn one_view_through_the_layer_is_what_the_application_synthesizes() {
             "rendered {rendered:.1} dB, synthesized {synthesized:.1} dB, the same image {same:.1} dB"
         );
     }
-}
-
-#[test]
-fn a_phone_logs_why_it_is_no_headset() {
-    let Some(run) = show("phone", &phone(&[], ""), "{ frames = 1 }") else { return };
-    let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
-    assert!(
-        matches!(display.as_slice(), [line] if line.contains("Cardboard") && line.contains("no broker at org.khronos.openxr.runtime_broker")),
-        "{display:?}"
-    );
 }
 
 /// All checks use the same run: under qemu, compiling shaders takes most of the time.

@@ -24,20 +24,26 @@ const NAME: &str = "yoro";
 /// The version of cargo-apk, which builds the application.
 pub const CARGO_APK: &str = "0.10.0";
 
-/// Build options.
-#[derive(Clone, Debug, Default)]
+/// Build, sign and check the Android application
+#[derive(clap::Args, Clone, Debug, Default)]
 pub struct Options {
-    /// Build a small and fast release with the profile `android`, instead of a debuggable build.
+    /// Build a small and fast release instead of a debuggable build
+    #[arg(long)]
     pub release: bool,
-    /// Install missing packages without asking.
+    /// Install missing packages (apt) without asking
+    #[arg(long)]
     pub yes: bool,
-    /// OpenXR loaders to include in the APK, at most one per architecture.
+    /// Pack this libopenxr_loader.so into the APK; at most one for each processor
+    #[arg(long = "openxr-loader", value_name = "FILE")]
     pub openxr_loaders: Vec<PathBuf>,
-    /// Also convert the APK to a bundle for a store.
+    /// Make an application bundle (.aab) for a store, too
+    #[arg(long)]
     pub bundle: bool,
-    /// Also pack an APK for Meta's store.
+    /// Pack an APK for Meta's store, too
+    #[arg(long)]
     pub quest: bool,
     /// Compile faster, for tests: the same code, but not optimized as a whole, and in another folder.
+    #[arg(skip)]
     pub quick: bool,
 }
 

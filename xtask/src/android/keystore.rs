@@ -38,21 +38,15 @@ impl Keystore {
         if !release {
             return Self::debug();
         }
-        let password = env::var(format!("{RELEASE}_PASSWORD")).ok();
-        Self::given(env::var_os(RELEASE).map(PathBuf::from), password)?.map_or_else(Self::debug, Ok)
-    }
-
-    /// Returns the keystore in the environment, if there is one.
-    fn given(path: Option<PathBuf>, password: Option<String>) -> anyhow::Result<Option<Self>> {
-        let Some(path) = path else { return Ok(None) };
-        let Some(password) = password else {
+        let Some(path) = env::var_os(RELEASE).map(PathBuf::from) else { return Self::debug() };
+        let Ok(password) = env::var(format!("{RELEASE}_PASSWORD")) else {
             bail!("{RELEASE} is set, but not {RELEASE}_PASSWORD: set both or neither");
         };
         // cargo-apk and apksigner run in other folders.
         let path = path
             .canonicalize()
             .with_context(|| format!("{}, which {RELEASE} names, cannot be opened", path.display()))?;
-        Ok(Some(Self { path, password, debug: false }))
+        Ok(Self { path, password, debug: false })
     }
 
     /// Returns the keystore that all Android tools share, so that one's application can be updated by another's.
@@ -81,26 +75,5 @@ impl Keystore {
             .args(["-storepass", &self.password, "-keypass", &self.password, "-keystore"])
             .arg(&self.path);
         console::run(&mut keytool).map(drop)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_release_key_is_complete_or_absent() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("my.keystore");
-        std::fs::write(&file, "").unwrap();
-        let given = |path: Option<&PathBuf>, password: Option<&str>| {
-            Keystore::given(path.cloned(), password.map(str::to_owned)).map_err(|error| error.to_string())
-        };
-        assert_eq!(given(None, None), Ok(None));
-        let keystore = given(Some(&file), Some("secret")).unwrap().unwrap();
-        assert!(keystore.path.is_absolute() && keystore.password == "secret" && !keystore.debug);
-        assert!(given(Some(&file), None).unwrap_err().contains("_PASSWORD"));
-        let absent = folder.path().join("absent.keystore");
-        assert!(given(Some(&absent), Some("secret")).unwrap_err().contains("absent.keystore"));
     }
 }

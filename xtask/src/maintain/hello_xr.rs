@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 
 use super::monado;
-use crate::folders::{copy, make_once, target_folder};
+use crate::folders::{copy, make_once, remove, target_folder};
 use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
 
 const RELEASE: &str = "sid";
@@ -40,7 +40,6 @@ pub fn make() -> anyhow::Result<PathBuf> {
     make_once(&folder, &format!("{RELEASE} {PACKAGE} {VALIDATION}\n"), || {
         eprintln!("fetching hello_xr for the tests: 40 MB, once");
         let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[RELEASE])?))?;
-        apt.update()?;
         let program = apt.download(&[PACKAGE.to_owned()])?;
         let all = apt.download(&[VALIDATION.to_owned()]).unwrap_or_else(|error| {
             eprintln!(
@@ -54,8 +53,7 @@ pub fn make() -> anyhow::Result<PathBuf> {
                 unpack(&package, &root, &[], &WITHOUT)?;
             }
         }
-        apt.remove();
-        Ok(())
+        remove(&folder.join("apt"))
     })?;
     let libraries = root.join("usr/lib/x86_64-linux-gnu");
     let launch = |name: &str, template, program: &Path| {

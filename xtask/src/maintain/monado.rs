@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use anyhow::bail;
 
 use crate::folders::{make_once, target_folder};
-use crate::packages::{PrivateApt, debian_sources, fill_launcher, quoted, unpack};
+use crate::packages::{PrivateApt, debian_sources, fill_launcher, quoted};
 
 /// The Debian release with these packages.
 const RELEASE: &str = "trixie";
@@ -84,12 +84,7 @@ pub(crate) fn unpack_with_needs(
     packages: &[String],
 ) -> anyhow::Result<()> {
     let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[release])?))?;
-    apt.update()?;
-    for package in apt.download(packages)? {
-        unpack(&package, root, &[], &WITHOUT)?;
-    }
-    apt.remove();
-    Ok(())
+    apt.unpack(packages, root, &WITHOUT)
 }
 
 /// Writes a launcher from its template. It runs a program with the libraries in `first`, then those of this root, which has

@@ -160,15 +160,3 @@ fn needs(output: &str) -> Option<Vec<String>> {
     }
     Some(needs)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_an_archive_needs_is_read_once() {
-        let output = "   Compiling x\nnote: link against\n\nnote: native-static-libs: -lgcc_s -lm -lm -lc\n";
-        assert_eq!(needs(output).unwrap(), ["-lgcc_s", "-lm", "-lc"]);
-        assert_eq!(needs("nothing"), None);
-    }
-}

@@ -79,13 +79,6 @@ fn newest_glibc(content: &[u8]) -> Option<(u32, u32)> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_newest_version_is_found() {
-        let names = b"\0libc.so.6\0GLIBC_2.9\0GLIBC_2.17\0GLIBC_2.2.5\0GLIBC_PRIVATE\0";
-        assert_eq!(newest_glibc(names), Some((2, 17)));
-        assert_eq!(newest_glibc(b"nothing"), None);
-    }
-
     /// The check fails for libraries that a package must not contain.
     #[test]
     fn newer_functions_and_the_builders_folders_are_found() {

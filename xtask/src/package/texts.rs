@@ -86,32 +86,3 @@ fn next_link(text: &str) -> Option<(&str, &str, &str, &str)> {
     let end = middle + text[middle..].find(')')?;
     Some((&text[..start], &text[start + 1..middle], &text[middle + 2..end], &text[end + 1..]))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn links_are_led_elsewhere_or_end() {
-        let text = "See [a](x.md), `b[0]`, [c](y.md#z) and ![d](p.png).";
-        let led = with_links(text, |target| target.ends_with("png").then(|| format!("q/{target}")));
-        assert_eq!(led, "See a, `b[0]`, c and ![d](q/p.png).");
-    }
-
-    #[test]
-    fn the_manual_is_about_c() {
-        let text = "# All\n\n## Poses\n\nb\n\n## Vulkan\n\nc\n\n## C and C++\n\na\n### Depth\n\n## The shader kit\nd\n";
-        assert_eq!(manual(text), "# yoro in C and C++\n\n## C and C++\n\na\n### Depth\n\n## Poses\n\nb\n");
-    }
-
-    #[test]
-    fn texts_name_this_version() {
-        let needs = ["-lm".to_owned(), "-lc".to_owned()];
-        let series: Vec<&str> = VERSION.split('.').take(2).collect();
-        assert!(pkg_config(&needs).contains(&format!("\nVersion: {VERSION}\n")));
-        assert!(pkg_config(&needs).ends_with("Libs.private: -lm -lc\n"));
-        assert!(cmake(&needs).contains("INTERFACE_LINK_LIBRARIES \"-lm;-lc\""));
-        assert!(cmake(&needs).contains(&format!("IMPORTED_SONAME libyoro.so.{}\n", series.join("."))));
-        assert!(cmake_version().contains(&format!("MATCHES \"^{}\\\\.\"", series.join("\\\\."))));
-    }
-}

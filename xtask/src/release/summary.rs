@@ -31,24 +31,3 @@ pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
 pub fn origin(commit: &str) -> String {
     format!("Built from {commit}.")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_row_for_each_file() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["yoro-0.1.0.apk", "yoro-0.1.0.apk.cdx.json", "yoro-0.1.0.crate", "SHA256SUMS"] {
-            fs::write(folder.path().join(name), "four").unwrap();
-        }
-        let text = text(folder.path(), "abc").unwrap();
-        assert!(
-            text.contains("Built from abc.") && text.contains("| `yoro-0.1.0.apk` | 4 | phones"),
-            "{text}"
-        );
-        assert_eq!(text.matches("\n| `").count(), 2, "{text}");
-        fs::write(folder.path().join("unknown"), "four").unwrap();
-        assert!(super::text(folder.path(), "abc").is_err());
-    }
-}

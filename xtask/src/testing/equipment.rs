@@ -9,7 +9,7 @@ use anyhow::{Context as _, anyhow, bail};
 
 use crate::maintain::estimate::Compilers;
 
-use super::binaries::Program;
+use super::Program;
 use crate::maintain::{direct3d, hello_xr, monado};
 use crate::{android, apt, arm64, package, setup, web};
 
@@ -29,62 +29,47 @@ struct Item {
 
 type Make = fn() -> anyhow::Result<PathBuf>;
 
-const fn fetched(what: &'static str, variable: &'static str, users: &'static str, fetch: Make) -> Item {
+const fn item(what: &'static str, variable: &'static str, users: &'static str, fetch: Make) -> Item {
     Item { what, variable, users, fetch, build: None }
 }
 
-const fn built(
-    what: &'static str,
-    variable: &'static str,
-    users: &'static str,
-    fetch: Make,
-    build: Make,
-) -> Item {
-    Item { what, variable, users, fetch, build: Some(build) }
+impl Item {
+    const fn built(self, build: Make) -> Self {
+        Self { build: Some(build), ..self }
+    }
+
+    fn is_for(&self, package: &str, test: &str) -> bool {
+        let mut users = self.users.split("; ").filter_map(|user| user.split_once(' '));
+        users.any(|(user, part)| user == package && test.contains(part))
+    }
 }
 
 static ITEMS: [Item; 15] = [
-    built("the page", "WEB", "yoro-cli web::", page_can_be_built, || web::build().and(this_program())),
-    built(
-        "the example of yoro-wgpu",
-        "WGPU_WEB",
-        "yoro-wgpu the_example_in_a_browser",
-        page_can_be_built,
-        || web::build_example().and(this_program()),
-    ),
-    fetched("the WebXR emulator", "WEBXR", "yoro-cli web::; yoro-three-tests headsets", web::emulator),
-    fetched("three.js", "THREE", "yoro-three-tests ", web::three_modules),
+    item("the page", "WEB", "yoro-cli web::", page_can_be_built).built(|| web::build().and(this_program())),
+    item("the example of yoro-wgpu", "WGPU_WEB", "yoro-wgpu the_example_in_a_browser", page_can_be_built)
+        .built(|| web::build_example().and(this_program())),
+    item("the WebXR emulator", "WEBXR", "yoro-cli web::; yoro-three-tests headsets", web::emulator),
+    item("three.js", "THREE", "yoro-three-tests ", web::three_modules),
     // The names of the program's tests do not show which of them open a page.
-    fetched("Chromium", "CHROMIUM", "yoro-cli ; yoro-three-tests ", || {
+    item("Chromium", "CHROMIUM", "yoro-cli ; yoro-three-tests ", || {
         setup::browser().context("it cannot be installed")
     }),
-    fetched("Monado", "MONADO", "yoro-cli monado", monado::make),
+    item("Monado", "MONADO", "yoro-cli monado", monado::make),
     // Monado's drivers, and its launcher for this machine's programs.
-    fetched("Mesa 25", "MULTIVIEW", "yoro-tests multiview::", || Ok(monado::make()?.join("run"))),
-    fetched("hello_xr", "HELLO_XR", "yoro-openxr-layer hello_xr; yoro-cli through_the_layer", hello_xr::make),
-    fetched("vkd3d and DXVK", "DIRECT3D", "yoro-c direct3d_", direct3d::make),
-    fetched("shader compilers for mobile GPUs", "SHADER_COMPILERS", "yoro-tests shader_cost::", || {
+    item("Mesa 25", "MULTIVIEW", "yoro-tests multiview::", || Ok(monado::make()?.join("run"))),
+    item("hello_xr", "HELLO_XR", "yoro-openxr-layer hello_xr; yoro-cli through_the_layer", hello_xr::make),
+    item("vkd3d and DXVK", "DIRECT3D", "yoro-c direct3d_", direct3d::make),
+    item("shader compilers for mobile GPUs", "SHADER_COMPILERS", "yoro-tests shader_cost::", || {
         Ok(Compilers::make()?.folder().to_owned())
     }),
-    built("the C library's package", "C_PACKAGE", "yoro-c the_package", package::fetch_users_tools, || {
-        package::package(&[package::Target::Linux])?.pop().context("no package was made")
-    }),
-    fetched("mono, for C#", "MONO", "yoro-c csharp_calls", setup::mono),
-    built(
-        "the APK (cargo xtask doctor)",
-        "APK",
-        "yoro-android-host ",
-        android::ready_for_tests,
-        android::apk_for_tests,
-    ),
-    built(
-        "the Android layer",
-        "ANDROID_LAYER",
-        "yoro-android-host layer",
-        android::ready_for_tests,
-        package::layer_for_tests,
-    ),
-    built("Android on arm64", "ARM64_HOST", "yoro-android-host arm64", arm64::fetch, arm64::build_host),
+    item("the C library's package", "C_PACKAGE", "yoro-c the_package", package::fetch_users_tools)
+        .built(|| package::package(&[package::Target::Linux])?.pop().context("no package was made")),
+    item("mono, for C#", "MONO", "yoro-c csharp_calls", setup::mono),
+    item("the APK (cargo xtask doctor)", "APK", "yoro-android-host ", android::ready_for_tests)
+        .built(android::apk_for_tests),
+    item("the Android layer", "ANDROID_LAYER", "yoro-android-host layer", android::ready_for_tests)
+        .built(package::layer_for_tests),
+    item("Android on arm64", "ARM64_HOST", "yoro-android-host arm64", arm64::fetch).built(arm64::build_host),
 ];
 
 fn this_program() -> anyhow::Result<PathBuf> {
@@ -95,44 +80,22 @@ fn page_can_be_built() -> anyhow::Result<PathBuf> {
     if web::can_be_built() { Ok(PathBuf::new()) } else { bail!("no Rust can compile for browsers") }
 }
 
-impl Item {
-    fn is_for(&self, package: &str, test: &str) -> bool {
-        self.users().any(|(user, part)| user == package && test.contains(part))
-    }
-
-    fn users(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        self.users.split("; ").filter_map(|user| user.split_once(' '))
-    }
-}
-
 /// True if a test needs any of the items.
 pub fn is_needed(package: &str, test: &str) -> bool {
     ITEMS.iter().any(|item| item.is_for(package, test))
 }
 
-/// Returns patterns in the table that match no test, for example because it was renamed.
-pub fn stale(programs: &[Program]) -> Vec<String> {
-    let fits = |(package, part): &(&str, &str)| {
-        let mut own = programs.iter().filter(|(binary, _)| binary.package == *package);
-        own.any(|(_, names)| names.iter().any(|name| name.contains(part)))
-    };
-    let users = ITEMS.iter().flat_map(Item::users).filter(|user| !fits(user));
-    users.map(|(package, part)| format!("{package} {part}")).collect()
-}
-
 /// Installations and downloads that are running in threads.
 pub struct Preparation<'scope> {
-    system: Option<ScopedJoinHandle<'scope, anyhow::Result<Equipment>>>,
+    libraries: Option<ScopedJoinHandle<'scope, anyhow::Result<Equipment>>>,
     items: Vec<(&'static Item, ScopedJoinHandle<'scope, anyhow::Result<PathBuf>>)>,
 }
 
 /// The equipment of this machine.
 #[derive(Debug, Default)]
 pub struct Equipment {
-    /// Paths by variable; `None` if the item is not available.
-    items: Vec<(&'static str, Option<PathBuf>)>,
-    /// A sentence for each item that is not available.
-    pub absent: Vec<String>,
+    /// Names and variables with their paths; `None` if the item is not available.
+    pub items: Vec<(&'static str, &'static str, Option<PathBuf>)>,
     /// How long each item was built, in seconds.
     pub seconds: Vec<(&'static str, f64)>,
 }
@@ -145,27 +108,25 @@ impl<'scope> Preparation<'scope> {
             setup::ensure()?;
         }
         let libraries = || {
-            let mut equipment = Equipment::default();
-            equipment.add("OSMesa", "OSMESA", setup::ensure()?.then(PathBuf::new));
-            equipment.add("Vulkan or its validation layer", "VULKAN", setup::vulkan().then(PathBuf::new));
-            Ok(equipment)
+            let osmesa = ("OSMesa", "OSMESA", setup::ensure()?.then(PathBuf::new));
+            let vulkan = ("Vulkan or its validation layer", "VULKAN", setup::vulkan().then(PathBuf::new));
+            Ok(Equipment { items: vec![osmesa, vulkan], seconds: Vec::new() })
         };
-        let wanted = |item: &&Item| match programs {
-            None => true,
-            // A few selected tests are not worth the wait for a browser, so they only use an installed one.
-            Some(programs) => {
-                let is_user =
-                    |(binary, names): &Program| names.iter().any(|name| item.is_for(&binary.package, name));
-                item.variable != "CHROMIUM" && programs.iter().any(is_user)
-            }
+        // A few selected tests are not worth the wait for a browser, so they only use an installed one.
+        let wanted = |item: &&Item| {
+            programs.is_none_or(|programs| {
+                let mut tests =
+                    programs.iter().flat_map(|one| one.tests.iter().map(|test| (&one.package, test)));
+                item.variable != "CHROMIUM" && tests.any(|(package, test)| item.is_for(package, test))
+            })
         };
         let items = ITEMS.iter().filter(wanted).map(|item| (item, scope.spawn(item.fetch))).collect();
-        Ok(Self { system: Some(scope.spawn(libraries)), items })
+        Ok(Self { libraries: Some(scope.spawn(libraries)), items })
     }
 
     /// Waits for the system libraries, which all tests need.
     pub fn libraries(&mut self) -> anyhow::Result<Equipment> {
-        self.system.take().map_or_else(|| Ok(Equipment::default()), join)
+        self.libraries.take().map_or_else(|| Ok(Equipment::default()), join)
     }
 
     /// Waits for the other items, and builds those that have to be built.
@@ -182,7 +143,7 @@ impl<'scope> Preparation<'scope> {
                     None
                 }
             };
-            equipment.add(item.what, item.variable, path);
+            equipment.items.push((item.what, item.variable, path));
             equipment.seconds.push((item.what, start.elapsed().as_secs_f64()));
         }
         Ok(equipment)
@@ -194,22 +155,9 @@ fn join<T>(handle: ScopedJoinHandle<'_, anyhow::Result<T>>) -> anyhow::Result<T>
 }
 
 impl Equipment {
-    fn add(&mut self, what: &str, variable: &'static str, path: Option<PathBuf>) {
-        if path.is_none() {
-            self.absent.push(format!("{what} cannot be had here: its tests were left out"));
-        }
-        self.items.push((variable, path));
-    }
-
-    /// Adds what was prepared meanwhile.
-    pub fn extend(&mut self, other: Self) {
-        self.items.extend(other.items);
-        self.absent.extend(other.absent);
-    }
-
     /// Sets the variables that tell a test program what is available.
     pub fn set_variables(&self, command: &mut Command) {
-        for (variable, path) in &self.items {
+        for (_, variable, path) in &self.items {
             match path {
                 Some(path) => command.env(format!("YORO_TEST_{variable}"), path),
                 None => command.env(format!("YORO_TEST_WITHOUT_{variable}"), "1"),
@@ -230,17 +178,6 @@ mod tests {
         };
         assert_eq!(needed("yoro-bench", "monado::arm64"), "");
         assert_eq!(needed("yoro-android-host", "the_arm64_library"), "APK ARM64_HOST");
-        assert_eq!(needed("yoro-openxr-layer", "monado_and_hello_xr"), "HELLO_XR");
         assert_eq!(needed("yoro-cli", "web::a_headset"), "WEB WEBXR CHROMIUM");
-    }
-
-    #[test]
-    fn variables_say_what_is_here_and_what_is_not() {
-        let items = vec![("APK", Some("yoro.apk".into())), ("MONADO", None)];
-        let equipment = Equipment { items, ..Equipment::default() };
-        let mut command = Command::new("test");
-        equipment.set_variables(&mut command);
-        let set: Vec<_> = command.get_envs().filter_map(|(name, _)| name.to_str()).collect();
-        assert_eq!(set, ["YORO_TEST_APK", "YORO_TEST_WITHOUT_MONADO"]);
     }
 }

@@ -5,30 +5,24 @@
 //! once more, alone; and what tests need is fetched and built meanwhile. cargo-nextest provides most of this, but depends
 //! on 400 packages, which a fresh clone would have to compile first.
 
-mod binaries;
 mod equipment;
-mod process;
-mod summary;
+mod run;
 
-use std::collections::VecDeque;
 use std::env;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use std::process::Stdio;
-use std::sync::{Mutex, PoisonError, mpsc};
+use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Instant;
 
-use anyhow::bail;
+use anyhow::{Context as _, bail};
+use serde_json::Value;
 
-use crate::cargo::cargo;
-use crate::folders::target_folder;
+use crate::cargo::{self, cargo};
 use crate::{apt, setup};
 
-use binaries::Program;
 use equipment::{Equipment, Preparation};
-use process::Finished;
-use summary::Summary;
+use run::Run;
 
 /// Parts of `program name` of the tests that must not run beside others.
 ///
@@ -41,173 +35,180 @@ const ALONE: [&str; 2] = [
 ];
 /// Number of unit tests per process. Each takes milliseconds, while an integration test takes seconds and has its own.
 const UNIT: usize = 60;
-/// Maximum number of failures that are retried. More of them are no coincidence.
-const MAX_RETRIED: usize = 8;
 
-/// Which tests to run, and how.
-#[derive(Clone, Debug, Default)]
+/// Set up, then run all tests
+#[derive(clap::Args, Clone, Debug, Default)]
 pub struct Options {
-    /// Run only tests whose names contain one of these.
+    /// Run only tests whose names contain one of these; tests in documentation only if no other test fits
     pub filters: Vec<String>,
-    /// Run only tests of these packages.
+    /// Run only the tests of these packages, without those in documentation
+    #[arg(long = "package", short, value_name = "NAME")]
     pub packages: Vec<String>,
-    /// Renew the golden images.
+    /// Renew the golden images of tests/golden instead of comparing with them
+    #[arg(long)]
     pub bless: bool,
-    /// Number of processes at a time. `None` means one per processor.
+    /// Run this many test processes at a time [default: one for each processor]
+    #[arg(long, value_name = "N")]
     pub jobs: Option<NonZeroUsize>,
 }
 
-impl Options {
-    fn all(&self) -> bool {
-        self.filters.is_empty() && self.packages.is_empty()
-    }
-
-    fn takes(&self, name: &str) -> bool {
-        self.filters.is_empty() || self.filters.iter().any(|filter| name.contains(filter))
-    }
+/// A test program.
+#[derive(Clone, Debug)]
+struct Program {
+    /// The name in messages: the package, and the target unless it is the package's library.
+    label: String,
+    package: String,
+    /// True for integration tests. Each takes seconds, while unit tests take milliseconds.
+    is_integration: bool,
+    executable: PathBuf,
+    /// The package's folder, in which cargo runs it.
+    folder: PathBuf,
+    /// The names of the selected tests.
+    tests: Vec<String>,
 }
 
-/// The work of one process.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Job {
-    /// The program's index. `None` for the tests in the documentation of all libraries.
-    program: Option<usize>,
-    /// The names of its tests.
-    names: Vec<String>,
+/// The work of one process: a program's tests, or all tests in documentation if there is no program.
+#[derive(Clone, Debug)]
+struct Job<'a> {
+    program: Option<&'a Program>,
+    tests: Vec<String>,
 }
 
 /// All jobs, in groups that run one after another.
-#[derive(Debug, Default, PartialEq, Eq)]
-struct Plan {
+#[derive(Debug, Default)]
+struct Plan<'a> {
     /// Tests that need no equipment.
-    first: Vec<Job>,
+    first: Vec<Job<'a>>,
     /// Tests that need equipment.
-    equipped: Vec<Job>,
+    equipped: Vec<Job<'a>>,
     /// The tests in [`ALONE`].
-    alone: Vec<Job>,
+    alone: Vec<Job<'a>>,
 }
 
 /// Compiles and runs the selected tests of the workspace, or all, and prints a summary.
 pub fn test(options: &Options) -> anyhow::Result<()> {
-    let mut summary = Summary::begin();
+    let start = Instant::now();
     apt::install_missing(|| vec![setup::cpp()], true)?;
-    let equipment = thread::scope(|scope| {
-        let preparation = options.all().then(|| Preparation::begin(scope, None)).transpose()?;
-        let binaries = summary.measure("compiling the tests", || binaries::compile(&options.packages))?;
-        let mut programs = Vec::new();
-        for binary in binaries {
-            let mut names = binary.list()?;
-            names.retain(|name| options.takes(name));
-            programs.push((binary, names));
-        }
+    let is_all = options.filters.is_empty() && options.packages.is_empty();
+    thread::scope(|scope| {
+        let preparation = is_all.then(|| Preparation::begin(scope, None)).transpose()?;
+        let begin = Instant::now();
+        let programs = compile(options)?;
+        let mut run = Run::default();
+        run.add_phase("compiling the tests", begin);
         let mut preparation = match preparation {
             Some(preparation) => preparation,
             None => Preparation::begin(scope, Some(&programs))?,
         };
-        if options.all() {
-            for part in stale(&programs) {
-                eprintln!("warning: no test is called {part}: correct the table in xtask/src/testing");
-            }
-        }
-        let equipment = summary.measure("waiting for the libraries", || preparation.libraries())?;
-        let mut run = Run { programs: &programs, options, equipment, folder: target_folder()? };
+        let begin = Instant::now();
+        run.equipment = preparation.libraries()?;
+        run.add_phase("waiting for the libraries", begin);
         let plan = plan(&programs, options);
+        run.total = programs.iter().map(|program| program.tests.len()).sum();
         let workers =
             options.jobs.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
         // The first worker builds, since cargo keeps but one processor busy while it links and optimizes whole programs.
         let mut prepared = Ok(Equipment::default());
         let prepare = || prepared = preparation.finish();
-        run.all(plan.first, workers, "running tests, building equipment", &mut summary, prepare);
-        let prepared = prepared?;
-        for (what, seconds) in &prepared.seconds {
-            summary.add_phase(&format!("  of it {what}"), *seconds);
+        run.perform("running tests, building equipment", plan.first, workers, options, prepare)?;
+        run.equip(prepared?);
+        run.perform("running tests with equipment", plan.equipped, workers, options, || ())?;
+        run.perform("running tests alone", plan.alone, 1, options, || ())?;
+        run.retry(options)?;
+        if options.bless {
+            println!("golden images renewed: look at `git diff --stat tests/golden` and at the pictures");
         }
-        run.equipment.extend(prepared);
-        run.all(plan.equipped, workers, "running tests with equipment", &mut summary, || ());
-        run.all(plan.alone, 1, "running tests alone", &mut summary, || ());
-        run.retry(&mut summary);
-        Ok::<Equipment, anyhow::Error>(run.equipment)
-    })?;
-    for sentence in &equipment.absent {
-        println!("{sentence}");
-    }
-    if options.bless {
-        println!("golden images renewed: look at `git diff --stat tests/golden` and at the pictures");
-    }
-    print!("{summary}");
-    if summary.count() == 0 {
-        bail!("no test is called so: say less of its name");
-    }
-    if !summary.failed.is_empty() {
-        bail!("{} tests failed: see above", summary.failed.len());
-    }
-    Ok(())
+        run.conclude(start)
+    })
 }
 
-/// Returns patterns in the tables that match no test, for example because it was renamed.
-fn stale(programs: &[Program]) -> Vec<String> {
-    let is_alone = |part: &str, (binary, names): &Program| {
-        names.iter().any(|name| format!("{} {name}", binary.label).contains(part))
+/// Compiles the selected packages' tests, and lists those that the filters select.
+fn compile(options: &Options) -> anyhow::Result<Vec<Program>> {
+    let mut arguments = vec!["test", "--no-run", "--message-format=json-render-diagnostics"];
+    arguments.extend(cargo::choice(&options.packages));
+    cargo::announce(&arguments);
+    let messages = cargo::output(&arguments)?;
+    let mut programs: Vec<Program> = messages.lines().filter_map(parse).collect();
+    // Integration tests come first, since they take longer. Cargo reports programs in the order in which it finishes them.
+    programs.sort_by(|a, b| b.is_integration.cmp(&a.is_integration).then(a.label.cmp(&b.label)));
+    for program in &mut programs {
+        program.tests = list(program)?;
+        let fits = |name: &String| options.filters.iter().any(|filter| name.contains(filter));
+        program.tests.retain(|name| options.filters.is_empty() || fits(name));
+    }
+    Ok(programs)
+}
+
+/// Parses the test program in one of cargo's messages.
+fn parse(message: &str) -> Option<Program> {
+    let message: Value = serde_json::from_str(message).ok()?;
+    if message["reason"] != "compiler-artifact" || message["profile"]["test"] != true {
+        return None;
+    }
+    let executable = PathBuf::from(message["executable"].as_str()?);
+    // `path+file:///folder/name#version` or `path+file:///folder#name@version`
+    let (place, rest) = message["package_id"].as_str()?.rsplit_once('#')?;
+    let package = rest.split_once('@').map(|(name, _)| name).or_else(|| place.rsplit('/').next())?;
+    let (kind, target) = (message["target"]["kind"][0].as_str()?, message["target"]["name"].as_str()?);
+    let label = match kind {
+        "test" => format!("{package}::{target}"),
+        "bin" | "example" => format!("{package}::{kind}/{target}"),
+        _ => package.to_owned(),
     };
-    let alone = ALONE.iter().filter(|part| !programs.iter().any(|program| is_alone(part, program)));
-    alone.map(|part| (*part).to_owned()).chain(equipment::stale(programs)).collect()
+    let folder = PathBuf::from(message["manifest_path"].as_str()?).parent()?.to_owned();
+    let (package, is_integration) = (package.to_owned(), kind == "test");
+    Some(Program { label, package, is_integration, executable, folder, tests: Vec::new() })
 }
 
-/// Divides the tests into jobs. Integration tests come first, since they take longer.
-fn plan(programs: &[Program], options: &Options) -> Plan {
-    let mut plan = Plan::default();
-    let chosen = programs.iter().any(|(_, names)| !names.is_empty());
-    // Searching doc tests takes seconds per library. It is omitted if the filter has matched other tests.
-    if options.packages.is_empty() && (options.filters.is_empty() || !chosen) {
-        plan.first.push(Job { program: None, names: Vec::new() });
+/// Returns the names of a program's tests in the order in which it runs them.
+fn list(program: &Program) -> anyhow::Result<Vec<String>> {
+    let mut command = program.command();
+    let output = command.args(["--list", "--format", "terse"]).stderr(Stdio::inherit()).output();
+    let output = output.with_context(|| format!("{} cannot be started", program.executable.display()))?;
+    if !output.status.success() {
+        bail!("{} cannot list its tests ({})", program.label, output.status);
     }
-    let mut order: Vec<usize> = (0..programs.len()).collect();
-    order.sort_by_key(|&program| !programs[program].0.integration);
-    for program in order {
-        let (binary, names) = &programs[program];
-        let job = |names: &[String]| Job { program: Some(program), names: names.to_vec() };
-        let is_alone = |name: &String| {
-            let full = format!("{} {name}", binary.label);
-            ALONE.iter().any(|part| full.contains(part))
-        };
-        let (alone, beside): (Vec<_>, Vec<_>) = names.iter().cloned().partition(is_alone);
-        plan.alone.extend(alone.chunks(1).map(job));
-        let (equipped, first): (Vec<_>, Vec<_>) =
-            beside.into_iter().partition(|name| equipment::is_needed(&binary.package, name));
-        let size = if binary.integration { 1 } else { UNIT };
-        plan.first.extend(first.chunks(size).map(job));
-        plan.equipped.extend(equipped.chunks(size).map(job));
-    }
-    plan
+    let listing = String::from_utf8_lossy(&output.stdout);
+    Ok(listing.lines().filter_map(|line| line.strip_suffix(": test")).map(str::to_owned).collect())
 }
 
-/// A run of the selected tests.
-struct Run<'a> {
-    programs: &'a [Program],
-    options: &'a Options,
-    equipment: Equipment,
-    /// The folder for the output of processes.
-    folder: PathBuf,
-}
-
-impl<'a> Run<'a> {
-    fn label(&self, job: &Job) -> &'a str {
-        job.program.map_or("documentation", |program| &self.programs[program].0.label)
+impl Program {
+    fn command(&self) -> Command {
+        let mut command = Command::new(&self.executable);
+        command.current_dir(&self.folder).stdin(Stdio::null());
+        command
     }
 
-    fn process(&self, job: &Job) -> Finished {
-        let mut command = match job.program {
+    /// True if a test must not run beside others.
+    fn is_alone(&self, test: &str) -> bool {
+        let full = format!("{} {test}", self.label);
+        ALONE.iter().any(|part| full.contains(part))
+    }
+}
+
+impl Job<'_> {
+    /// Returns the name in messages.
+    fn name(&self) -> String {
+        match (self.program, &self.tests[..]) {
+            (None, _) => "documentation".to_owned(),
+            (Some(program), [test]) => format!("{} {test}", program.label),
+            (Some(program), tests) => format!("{}, {} tests", program.label, tests.len()),
+        }
+    }
+
+    fn command(&self, options: &Options, equipment: &Equipment) -> Command {
+        let mut command = match self.program {
             Some(program) => {
-                let mut command = self.programs[program].0.command();
-                command.args(["--exact", "--test-threads=1"]).args(&job.names);
+                let mut command = program.command();
+                command.args(["--exact", "--test-threads=1"]).args(&self.tests);
                 // Not captured if it is one, so that output before a crash is not lost; else to be found by its name.
-                command.arg(if job.names.len() == 1 { "--nocapture" } else { "--show-output" });
+                command.arg(if self.tests.len() == 1 { "--nocapture" } else { "--show-output" });
                 command
             }
             None => {
                 let mut command = cargo();
-                command.args(["test", "--workspace", "--doc", "--no-fail-fast", "--"]);
-                command.args(&self.options.filters).stdin(Stdio::null());
+                command.args(["test", "--workspace", "--doc", "--no-fail-fast", "--"]).args(&options.filters);
+                command.stdin(Stdio::null());
                 command
             }
         };
@@ -215,126 +216,66 @@ impl<'a> Run<'a> {
         if env::var_os("LIBGL_ALWAYS_SOFTWARE").is_none() {
             command.env("LIBGL_ALWAYS_SOFTWARE", "1");
         }
-        if self.options.bless {
+        if options.bless {
             command.env("YORO_BLESS", "1");
         }
-        self.equipment.set_variables(&mut command);
-        process::run(command, &job.names, &self.folder)
-    }
-
-    /// Runs jobs with `workers` processes at a time, one of which does something else `before`, and prints the results.
-    fn all(
-        &self,
-        jobs: Vec<Job>,
-        workers: usize,
-        what: &str,
-        summary: &mut Summary,
-        before: impl FnOnce() + Send,
-    ) {
-        let total: usize = self.programs.iter().map(|(_, names)| names.len()).sum();
-        let queue = Mutex::new(VecDeque::from(jobs));
-        let queue = || queue.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut before = Some(before);
-        let (sender, receiver) = mpsc::channel();
-        let start = Instant::now();
-        thread::scope(|scope| {
-            for _ in 0..workers {
-                let (sender, queue, before) = (sender.clone(), &queue, before.take());
-                scope.spawn(move || {
-                    if let Some(before) = before {
-                        before();
-                    }
-                    loop {
-                        let Some(job) = queue().pop_front() else { break };
-                        let finished = self.process(&job);
-                        if job.names.len() > 1 && finished.failed == job.names {
-                            // It has crashed: each test in a process of its own shows which one.
-                            let names = job.names.chunks(1);
-                            queue().extend(names.map(|name| Job { names: name.to_vec(), ..job.clone() }));
-                        } else {
-                            sender.send((job, finished)).ok();
-                        }
-                    }
-                });
-            }
-            drop(sender);
-            for (job, finished) in receiver {
-                let label = self.label(&job);
-                let name = match &job.names[..] {
-                    [name] => format!("{label} {name}"),
-                    [] => label.to_owned(),
-                    names => format!("{label}, {} tests", names.len()),
-                };
-                summary.add(label, &name, &finished);
-                print(&format!("[{:4}/{total}] ", summary.count()), &name, &finished);
-            }
-        });
-        summary.add_phase(what, start.elapsed().as_secs_f64());
-    }
-
-    /// Runs failed tests once more, alone.
-    fn retry(&self, summary: &mut Summary) {
-        if summary.failed.is_empty() || summary.failed.len() > MAX_RETRIED {
-            return;
-        }
-        println!("\nwhat failed, a second time and alone:");
-        for (program, (binary, names)) in self.programs.iter().enumerate() {
-            for name in names {
-                let full = format!("{} {name}", binary.label);
-                if summary.failed.contains(&full) {
-                    let finished = self.process(&Job { program: Some(program), names: vec![name.clone()] });
-                    print("", &full, &finished);
-                    if finished.failed.is_empty() {
-                        summary.add_flaky(&full);
-                    }
-                }
-            }
-        }
+        equipment.set_variables(&mut command);
+        command
     }
 }
 
-/// Prints a line for a process, and its whole output if a test failed.
-fn print(count: &str, name: &str, finished: &Finished) {
-    let word = if finished.failed.is_empty() { "ok" } else { "FAILED" };
-    println!("{count}{word:7} {:6.2} s  {name}", finished.seconds);
-    if !finished.failed.is_empty() {
-        for line in finished.output.lines() {
-            println!("    {line}");
+/// Divides the tests into jobs.
+fn plan<'a>(programs: &'a [Program], options: &Options) -> Plan<'a> {
+    let mut plan = Plan::default();
+    let is_found = programs.iter().any(|program| !program.tests.is_empty());
+    // Searching doc tests takes seconds per library. It is omitted if the filter has matched other tests.
+    if options.packages.is_empty() && (options.filters.is_empty() || !is_found) {
+        plan.first.push(Job { program: None, tests: Vec::new() });
+    }
+    for program in programs {
+        let (alone, beside): (Vec<_>, Vec<_>) =
+            program.tests.iter().cloned().partition(|test| program.is_alone(test));
+        let (equipped, first): (Vec<_>, Vec<_>) =
+            beside.into_iter().partition(|test| equipment::is_needed(&program.package, test));
+        let size = if program.is_integration { 1 } else { UNIT };
+        for (group, tests, size) in [
+            (&mut plan.first, first, size),
+            (&mut plan.equipped, equipped, size),
+            (&mut plan.alone, alone, 1),
+        ] {
+            group.extend(
+                tests.chunks(size).map(|tests| Job { program: Some(program), tests: tests.to_vec() }),
+            );
         }
     }
+    plan
 }
 
 #[cfg(test)]
 mod tests {
-    use super::binaries::tests::binary;
     use super::*;
 
-    fn names(names: &[&str]) -> Vec<String> {
-        names.iter().map(|&name| name.to_owned()).collect()
+    fn program(package: &str, kind: &str, tests: &[&str]) -> Program {
+        let message = format!(
+            r#"{{"reason":"compiler-artifact","package_id":"path+file:///w/app#{package}@0.1.0","manifest_path":"/w/app/Cargo.toml",
+            "target":{{"kind":["{kind}"],"name":"program"}},"profile":{{"test":true}},"executable":"/w/target/p"}}"#
+        );
+        let tests = tests.iter().map(|&test| test.to_owned()).collect();
+        Program { tests, ..parse(&message).unwrap() }
     }
 
     #[test]
-    fn long_tests_go_first_and_equipped_ones_last() {
+    fn each_test_has_its_turn() {
         let programs = [
-            (binary("yoro", "lib"), names(&["a", "b"])),
-            (binary("yoro-render", "test"), names(&["1", "2"])),
-            (binary("yoro-cli", "test"), names(&["memory::largest", "xr::memory"])),
+            program("yoro-cli", "test", &["memory::largest", "xr::memory", "1", "2"]),
+            program("yoro", "lib", &["a", "b"]),
         ];
         let plan = plan(&programs, &Options::default());
-        let job = |program, tests: &[&str]| Job { program, names: names(tests) };
-        let first = [job(None, &[]), job(Some(1), &["1"]), job(Some(1), &["2"]), job(Some(0), &["a", "b"])];
-        assert_eq!(plan.first, first);
-        assert_eq!(plan.equipped, [job(Some(2), &["xr::memory"])]);
-        assert_eq!(plan.alone, [job(Some(2), &["memory::largest"])]);
-        assert_eq!(stale(&programs)[0], ALONE[1]);
-    }
-
-    #[test]
-    fn documentation_is_searched_only_for_names_that_are_nowhere_else() {
-        let planned = |filter: &str, found: &[&str]| {
-            let options = Options { filters: names(&[filter]), ..Options::default() };
-            plan(&[(binary("yoro", "lib"), names(found))], &options).first[0].program.is_none()
-        };
-        assert_eq!((planned("a", &["a"]), planned("src/lib.rs", &[])), (false, true));
+        let names = |jobs: &[Job]| jobs.iter().map(Job::name).collect::<Vec<_>>().join("; ");
+        // Chromium is for all tests of the program.
+        assert_eq!(names(&plan.first), "documentation; yoro, 2 tests");
+        let equipped = ["xr::memory", "1", "2"].map(|test| format!("yoro-cli::program {test}")).join("; ");
+        assert_eq!(names(&plan.equipped), equipped);
+        assert_eq!(names(&plan.alone), "yoro-cli::program memory::largest");
     }
 }

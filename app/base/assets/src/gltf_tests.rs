@@ -158,13 +158,8 @@ fn what_the_format_lets_out_may_be_left_out() {
     assert!(empty.refusal().contains("no triangle"));
     empty.root["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
     assert!(empty.refusal().contains("compressed by KHR_draco_mesh_compression"));
-    for (version, meshes) in [("1.0", json!([])), ("2.0", json!({"mesh": {}}))] {
-        let mut old = File::new();
-        old.root["asset"]["version"] = json!(version);
-        old.root["meshes"] = meshes;
-        assert!(old.refusal().contains("this is glTF 1.0"), "{}", old.refusal());
-    }
-    for root in [json!([]), json!({"scenes": 3, "animations": [1, {"channels": [2]}]}), json!(null)] {
+    for root in [json!([]), json!({"scenes": 3, "animations": [1, {"channels": [2]}]}), json!({"meshes": {}})]
+    {
         let file = File { root, ..File::new() };
         fs::write(file.folder.path().join("b.gltf"), file.root.to_string()).unwrap();
         let message = load(&file.folder.path().join("b.gltf")).unwrap_err().to_string();
@@ -254,4 +249,73 @@ fn a_far_node_is_brought_to_the_origin_with_its_details() {
     assert!(scene.viewpoints.iter().all(|v| v.position.length() < 2.0));
     let uv: Vec<Vec2> = scene.model.vertices.iter().map(|v| v.uv).collect();
     assert_eq!(uv.len(), 3);
+}
+
+#[test]
+fn vertex_colours_multiply_the_material() {
+    let mut file = File::new();
+    let red = file.accessor("VEC4", &[1.0, 0.0, 0.0, 1.0].repeat(3));
+    let white = file.accessor("VEC4", &[1.0; 12]);
+    file.root["materials"] =
+        json!([{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 1, 1], "metallicFactor": 0}}]);
+    // The second mesh has no colours.
+    file.root["nodes"] = json!([{"mesh": 0, "children": [1]}, {"mesh": 1}]);
+    let mesh = json!({"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]});
+    file.root["meshes"].as_array_mut().unwrap().push(mesh);
+    file.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(red);
+    let model = file.load().model;
+    let m = &model.materials[0];
+    assert!((m.diffuse - Vec3::new(0.7354, 1.0, 1.0)).abs().max_element() < 1e-3, "{}", m.diffuse);
+    let texture = &model.textures[m.diffuse_map.unwrap()];
+    let [w, h] = texture.size.map(|s| s as f32);
+    let texel = |uv: Vec2| (((1.0 - uv.y) * h) as usize * w as usize + (uv.x * w) as usize) * 4;
+    let shown =
+        model.vertices.iter().map(|v| <[u8; 4]>::try_from(&texture.rgba[texel(v.uv)..][..4]).unwrap());
+    assert_eq!(Vec::from_iter(std::collections::BTreeSet::from_iter(shown)), [[255, 0, 0, 255], [255; 4]]);
+    // White vertex colours are ignored. If there is a texture, it is drawn instead.
+    file.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(white);
+    let model = file.load().model;
+    assert_eq!((model.textures.len(), model.materials[0].diffuse_map), (0, None));
+    file.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(red);
+    file.picture(|_, _| [90, 80, 70, 255]);
+    file.root["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+    let model = file.load().model;
+    assert_eq!((model.textures.len(), model.textures[0].size), (1, [8, 8]));
+}
+
+#[test]
+fn specular_glossiness_is_a_material() {
+    let material = |inside: Value| {
+        let mut file = File::new();
+        file.picture(|_, _| [188, 188, 188, 255]);
+        let gloss = RgbaImage::from_pixel(4, 4, Rgba([255, 188, 0, 51]));
+        gloss.save(file.folder.path().join("gloss.png")).unwrap();
+        file.root["images"] = json!([{"uri": "p.png"}, {"uri": "gloss.png"}]);
+        file.root["textures"] = json!([{"source": 0}, {"source": 1}]);
+        file.root["extensionsUsed"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
+        file.root["materials"] = json!([{"extensions": {"KHR_materials_pbrSpecularGlossiness": inside}}]);
+        let model = file.load().model;
+        (model.materials[0].clone(), model.textures)
+    };
+    let srgb = |v: Vec3| Vec3::from(v.to_array().map(textures::to_srgb));
+    // A dielectric: nothing is treated as metal.
+    let (m, _) = material(
+        json!({"diffuseFactor": [1, 0.5, 0, 1], "specularFactor": [0.04, 0.04, 0.04], "glossinessFactor": 0.75}),
+    );
+    assert!(m.diffuse.distance(srgb(Vec3::new(0.96, 0.48, 0.0))) < 1e-5, "{}", m.diffuse);
+    assert!(m.specular.distance(srgb(Vec3::splat(0.04))) < 1e-5 && m.roughness == 0.25);
+    // A metal looks the same as in the metallic-roughness model.
+    let (m, _) = material(json!({"diffuseFactor": [0, 0, 0, 1], "specularFactor": [1, 0.8, 0.3]}));
+    assert!(m.diffuse.distance(srgb(Vec3::new(0.3, 0.24, 0.09))) < 0.03, "{}", m.diffuse);
+    assert_eq!((m.specular, m.roughness), (srgb(Vec3::new(1.0, 0.8, 0.3)), 0.0));
+    let (m, images) = material(json!({
+        "diffuseTexture": {"index": 0}, "specularGlossinessTexture": {"index": 1}, "glossinessFactor": 0.5
+    }));
+    assert!((m.roughness - 0.9).abs() < 1e-3, "{}", m.roughness);
+    let [diffuse, specular] = [m.diffuse_map, m.specular_map].map(|i| &images[i.unwrap()]);
+    assert_eq!(specular.rgba[..4], [255, 188, 0, 255]);
+    // The specular colour leaves nothing of the diffuse one; a metal keeps a share of its own colour.
+    let level = |v: f32| (textures::to_srgb(v) * 255.0).round() as u8;
+    let green = level(0.3 * (textures::to_linear(188.0 / 255.0) - 0.04));
+    assert_eq!(diffuse.rgba[..4], [level(0.288), green, 0, 255]);
 }

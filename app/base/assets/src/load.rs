@@ -275,27 +275,14 @@ fn check_notes(file: &Path, notes: &SceneNotes) -> Result<(), SceneError> {
     if !notes.scale.is_none_or(|s| s.is_finite() && s > 0.0) {
         return fault("the scale must be greater than 0");
     }
-    if let Some(s) = &notes.sky {
-        let colours = [s.sun_color, s.zenith, s.horizon, s.ground];
-        if colours.iter().any(|c| !c.is_finite() || c.min_element() < 0.0) {
-            return fault("the colours of the sky must be 0 or more");
-        }
-        if !s.sun_direction.is_normalized() {
-            return fault("sun_direction must have the length 1");
-        }
+    if notes.sky.is_some_and(|sky| !sky.sun_direction.is_normalized()) {
+        return fault("sun_direction must have the length 1");
     }
     let usable = |l: &PointLight| {
         l.position.is_finite() && l.color.is_finite() && l.color.min_element() >= 0.0 && l.range > 0.0
     };
     if !notes.lights.iter().flatten().all(usable) {
         return fault("lights need finite positions, colours of 0 or more and a range greater than 0");
-    }
-    let within = |m: &MaterialNotes| match m.alpha {
-        Alpha::Opaque => true,
-        Alpha::Cutout(a) | Alpha::Blend(a) => (0.0..=1.0).contains(&a),
-    };
-    if !notes.materials.values().all(within) {
-        return fault("cut-offs and opacities lie between 0 and 1");
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
-//! MTL material libraries, statement by statement: keywords in any spelling, numbers checked. Unintelligible statements
-//! are left out with a warning.
+//! MTL material libraries, statement by statement: keywords in any spelling, numbers checked. What is unintelligible has
+//! the default.
 
-use std::path::Path;
+use std::collections::HashMap;
 
 use glam::{Vec2, Vec3};
 
@@ -35,19 +35,19 @@ pub(super) struct MtlEntry {
     pub alpha: Option<MapStatement>,
 }
 
-/// Reads the text of a library. Never fails: unintelligible statements are left out with a warning.
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Vec<MtlEntry> {
-    let mut materials = Vec::new();
-    let mut faults = 0;
+/// Reads the text of a library.
+pub(super) fn parse(bytes: &[u8]) -> Vec<MtlEntry> {
+    let mut materials: Vec<(String, HashMap<String, String>)> = Vec::new();
     for statement in statements(&String::from_utf8_lossy(bytes)) {
-        if read(&statement, &mut materials).is_none() {
-            faults += 1;
-            if faults <= 5 {
-                log::warn!("{}: `{}` is ignored", path.display(), abridged(&statement));
-            }
+        let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((&statement, ""));
+        let (keyword, rest) = (keyword.to_ascii_lowercase(), rest.trim().to_owned());
+        if keyword == "newmtl" {
+            materials.push((if rest.is_empty() { "unnamed".into() } else { rest }, HashMap::new()));
+        } else if let Some((_, stated)) = materials.last_mut() {
+            stated.insert(keyword, rest);
         }
     }
-    materials.into_iter().map(Stated::entry).collect()
+    materials.into_iter().map(|(name, stated)| entry(name, &stated)).collect()
 }
 
 /// Returns the lines without comments and surrounding blanks. A line that ends in a backslash is joined with the next.
@@ -92,103 +92,59 @@ pub(super) fn abridged(statement: &str) -> String {
     s
 }
 
-/// What a library states of a material.
-#[derive(Default)]
-struct Stated {
-    /// The name and the maps.
-    entry: MtlEntry,
-    diffuse: Option<Vec3>,
-    specular: Option<Vec3>,
-    emissive: Option<Vec3>,
-    shininess: Option<f32>,
-    opacity: Option<f32>,
-    transparency: Option<f32>,
-    roughness: Option<f32>,
-    metallic: Option<f32>,
-    illumination: Option<f32>,
-}
-
-/// Reads a statement about the last material, or one that begins the next. Returns `None` if it is unintelligible.
-fn read(statement: &str, materials: &mut Vec<Stated>) -> Option<()> {
-    let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
-    let (keyword, rest) = (keyword.to_ascii_lowercase(), rest.trim());
-    if keyword == "newmtl" {
-        let mut next = Stated::default();
-        next.entry.material.name = if rest.is_empty() { "unnamed" } else { rest }.to_owned();
-        materials.push(next);
-    }
-    // What is stated before the first material belongs to none.
-    let Some(m) = materials.last_mut() else { return Some(()) };
-    let numbers: Vec<f32> =
-        rest.split_whitespace().map_while(|w| w.parse().ok()).filter(|n: &f32| n.is_finite()).collect();
-    let number = numbers.first().copied();
-    let color = || match *numbers.as_slice() {
-        [grey] => Some(Vec3::splat(grey)),
-        [r, g, b, ..] => Some(Vec3::new(r, g, b)),
+/// Returns the material of which a library states these values by their keywords.
+fn entry(name: String, stated: &HashMap<String, String>) -> MtlEntry {
+    let numbers = |keyword: &str| -> Vec<f32> {
+        let value = stated.get(keyword).map_or("", |value| value.trim_start_matches("-halo"));
+        value.split_whitespace().map_while(|word| word.parse().ok()).filter(|n: &f32| n.is_finite()).collect()
+    };
+    let number = |keyword: &str| numbers(keyword).first().copied();
+    let color = |keyword: &str| match *numbers(keyword).as_slice() {
+        [grey] => Some(Vec3::splat(grey).max(Vec3::ZERO)),
+        [r, g, b, ..] => Some(Vec3::new(r, g, b).max(Vec3::ZERO)),
         _ => None,
     };
-    match keyword.as_str() {
-        "kd" => m.diffuse = Some(color()?),
-        "ks" => m.specular = Some(color()?),
-        "ke" => m.emissive = Some(color()?),
-        "ns" => m.shininess = Some(number?),
-        "d" => {
-            let word = rest.strip_prefix("-halo").unwrap_or(rest).split_whitespace().next()?;
-            m.opacity = Some(word.parse().ok().filter(|n: &f32| n.is_finite())?);
-        }
-        "tr" => m.transparency = Some(number?),
-        "pr" => m.roughness = Some(number?),
-        "pm" => m.metallic = Some(number?),
-        "illum" => m.illumination = Some(number?),
-        "map_kd" => m.entry.diffuse = Some(map_statement(rest)?),
-        "map_ks" => m.entry.specular = Some(map_statement(rest)?),
-        "map_ke" => m.entry.emissive = Some(map_statement(rest)?),
-        "map_bump" | "bump" => m.entry.bump = Some(map_statement(rest)?),
-        "norm" | "map_norm" | "map_kn" => m.entry.normal = Some(map_statement(rest)?),
-        "map_d" => m.entry.alpha = Some(map_statement(rest)?),
-        // Not used here, but not worth a warning either.
-        _ => {}
+    let map = |keywords: &[&str]| keywords.iter().find_map(|keyword| map_statement(stated.get(*keyword)?));
+    let entry = MtlEntry {
+        diffuse: map(&["map_kd"]),
+        specular: map(&["map_ks"]),
+        emissive: map(&["map_ke"]),
+        bump: map(&["map_bump", "bump"]),
+        normal: map(&["norm", "map_norm", "map_kn"]),
+        alpha: map(&["map_d"]),
+        ..MtlEntry::default()
+    };
+    let default = Material::default();
+    let mut kd = color("kd").unwrap_or(if entry.diffuse.is_some() { Vec3::ONE } else { default.diffuse });
+    kd = kd.min(Vec3::ONE);
+    // Exporters that leave Kd black beside a map mean the map's colour.
+    if entry.diffuse.is_some() && kd == Vec3::ZERO {
+        kd = Vec3::ONE;
     }
-    Some(())
-}
-
-impl Stated {
-    fn entry(self) -> MtlEntry {
-        let Stated { entry, diffuse, specular, emissive, .. } = self;
-        let default = Material::default();
-        let color = |stated: Option<Vec3>, otherwise: Vec3| stated.map_or(otherwise, |c| c.max(Vec3::ZERO));
-        let mut kd = color(diffuse, if entry.diffuse.is_some() { Vec3::ONE } else { default.diffuse });
-        kd = kd.min(Vec3::ONE);
-        // Exporters that leave Kd black beside a map mean the map's colour.
-        if entry.diffuse.is_some() && kd == Vec3::ZERO {
-            kd = Vec3::ONE;
-        }
-        let mut ks = color(specular, default.specular).min(Vec3::ONE);
-        if specular.is_none() && self.illumination.is_some_and(|i| i < 2.0) {
-            ks = Vec3::ZERO;
-        }
-        let metallic = self.metallic.unwrap_or(0.0).clamp(0.0, 1.0);
-        if metallic > 0.0 && specular.is_none() {
-            ks = ks.lerp(kd, metallic);
-            kd *= 1.0 - metallic;
-        }
-        let mut ke = color(emissive, Vec3::ZERO);
-        if entry.emissive.is_some() && ke == Vec3::ZERO {
-            ke = Vec3::ONE;
-        }
-        let roughness = match (self.roughness, self.shininess) {
-            (Some(pr), _) => pr.clamp(0.0, 1.0),
-            (None, Some(ns)) => (2.0 / (ns.max(0.0) + 2.0)).sqrt(),
-            (None, None) => default.roughness,
-        };
-        let opacity = self.opacity.or_else(|| self.transparency.map(|t| 1.0 - t)).unwrap_or(1.0);
-        // Opacity 0 is taken as opaque: nobody models the invisible, and some exporters swap the meaning of d and Tr.
-        let alpha = if opacity > 0.0 && opacity < 1.0 { Alpha::Blend(opacity) } else { Alpha::Opaque };
-        let name = entry.material.name;
-        let own =
-            Material { name, diffuse: kd, specular: ks, emissive: ke, roughness, alpha, ..obj_default() };
-        MtlEntry { material: own, ..entry }
+    let specular = color("ks");
+    let mut ks = specular.unwrap_or(default.specular).min(Vec3::ONE);
+    if specular.is_none() && number("illum").is_some_and(|model| model < 2.0) {
+        ks = Vec3::ZERO;
     }
+    let metallic = number("pm").unwrap_or(0.0).clamp(0.0, 1.0);
+    if metallic > 0.0 && specular.is_none() {
+        ks = ks.lerp(kd, metallic);
+        kd *= 1.0 - metallic;
+    }
+    let mut ke = color("ke").unwrap_or(Vec3::ZERO);
+    if entry.emissive.is_some() && ke == Vec3::ZERO {
+        ke = Vec3::ONE;
+    }
+    let roughness = match (number("pr"), number("ns")) {
+        (Some(pr), _) => pr.clamp(0.0, 1.0),
+        (None, Some(ns)) => (2.0 / (ns.max(0.0) + 2.0)).sqrt(),
+        (None, None) => default.roughness,
+    };
+    let opacity = number("d").or_else(|| number("tr").map(|t| 1.0 - t)).unwrap_or(1.0);
+    // Opacity 0 is taken as opaque: nobody models the invisible, and some exporters swap the meaning of d and Tr.
+    let alpha = if opacity > 0.0 && opacity < 1.0 { Alpha::Blend(opacity) } else { Alpha::Opaque };
+    let own = Material { name, diffuse: kd, specular: ks, emissive: ke, roughness, alpha, ..obj_default() };
+    MtlEntry { material: own, ..entry }
 }
 
 /// Returns the material of faces without one. It is double-sided, because OBJ does not say which side of a face is
@@ -269,7 +225,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn one(text: &str) -> MtlEntry {
-        let mut all = parse(Path::new("t.mtl"), text.as_bytes());
+        let mut all = parse(text.as_bytes());
         assert_eq!(all.len(), 1, "{all:?}");
         all.remove(0)
     }
@@ -293,17 +249,6 @@ mod tests {
         assert_eq!(one("newmtl a\nTr 0.25").material.alpha, Alpha::Blend(0.75));
         assert_eq!(one("newmtl a\nd 1\nTr 0.5").material.alpha, Alpha::Opaque);
         assert_eq!(one("newmtl a\nTr 1").material.alpha, Alpha::Opaque);
-    }
-
-    #[test]
-    fn damaged_statements_are_left_out() {
-        let e = one(
-            "Kd 1 0 0\nnewmtl a\nKd 0.5\nKs 1 2\nKe red\nNs\nd x\nillum many\nmap_Kd\nKd spectral f.rfl\n\u{0}\u{1} 3",
-        );
-        assert_eq!(e.material.diffuse, Vec3::splat(0.5));
-        assert_eq!(e.material.specular, Material::default().specular);
-        assert_eq!(e.diffuse, None);
-        assert_eq!(one("newmtl\nKd 1 1 1").material.name, "unnamed");
     }
 
     #[test]
@@ -341,7 +286,7 @@ mod tests {
         #[test]
         fn any_statements_do(words in proptest::collection::vec(
             prop_oneof!["newmtl|Kd|Ks|Ke|Ns|d|Tr|illum|map_Kd|bump|-bm|-s|-o|-clamp|norm|Pr|Pm", "[0-9.e+-]{0,6}", "nan|inf|\\\\|#|a b", Just("\n".to_owned())], 0..60)) {
-            for e in parse(Path::new("t.mtl"), words.join(" ").as_bytes()) {
+            for e in parse(words.join(" ").as_bytes()) {
                 let m = e.material;
                 prop_assert!(m.diffuse.is_finite() && m.specular.is_finite() && m.emissive.is_finite() && (0.0..=1.0).contains(&m.roughness));
             }

@@ -562,16 +562,12 @@ mod tests {
         assert_eq!(with(|_| 255), AlphaUse::Opaque);
         assert_eq!(with(|_| 0), AlphaUse::Opaque);
         assert_eq!(with(|x| if x < 60 { 0 } else { 255 }), AlphaUse::Mask);
-        assert_eq!(
-            with(|x| if x < 20 {
-                128
-            } else if x < 60 {
-                0
-            } else {
-                255
-            }),
-            AlphaUse::Mask
-        );
+        let mostly = |x| match x {
+            0..20 => 128,
+            20..60 => 0,
+            _ => 255,
+        };
+        assert_eq!(with(mostly), AlphaUse::Mask);
         assert_eq!(with(|_| 128), AlphaUse::Blend);
         assert_eq!(with(|x| (x * 2) as u8), AlphaUse::Blend);
         let levels = |f: fn(u32) -> u8| alpha_levels(&picture(100, 1, |x, _| [9, 9, 9, f(x)]));
@@ -583,15 +579,8 @@ mod tests {
     #[test]
     fn heights_become_normals_and_normals_stay() {
         // Rising to the right and upwards in the picture.
-        let ramp = picture(16, 16, |x, y| {
-            [(x * 8 + (15 - y) * 4) as u8; 3]
-                .map(|c| c)
-                .into_iter()
-                .chain([255])
-                .collect::<Vec<_>>()
-                .try_into()
-                .unwrap()
-        });
+        let level = |x, y| (x * 8 + (15 - y) * 4) as u8;
+        let ramp = picture(16, 16, |x, y| [level(x, y), level(x, y), level(x, y), 255]);
         let n = normal_map(ramp.clone(), 1.0, false);
         let p = n.get_pixel(8, 8);
         assert!(p[0] < 120 && p[1] < 126 && p[0] < p[1] && p[2] > 200, "{p:?}");

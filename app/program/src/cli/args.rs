@@ -120,40 +120,33 @@ where
     })
 }
 
+fn number(text: &str, fits: impl Fn(f32) -> bool, advice: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|number| fits(*number)).ok_or_else(|| advice.into())
+}
+
 /// Parses a finite number.
 pub fn parse_finite(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err("give a finite number".into()),
-    }
+    number(text, f32::is_finite, "give a finite number")
 }
 
 /// Parses an angle of a turn in degrees.
 pub fn parse_degrees(text: &str) -> Result<f32, String> {
-    let degrees = text.parse::<f32>().ok().filter(|degrees| degrees.abs() <= 360.0);
-    degrees.ok_or_else(|| "give degrees from -360 to 360".into())
+    number(text, |degrees| degrees.abs() <= 360.0, "give degrees from -360 to 360")
 }
 
 /// Parses a finite number above zero.
 pub fn parse_positive(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("give a number above 0".into()),
-    }
+    number(text, |number| number > 0.0 && number.is_finite(), "give a number above 0")
 }
 
 /// Parses the distance of a far plane in metres, which may be infinite.
 pub fn parse_far(text: &str) -> Result<f32, String> {
-    let far = text.parse::<f32>().ok().filter(|far| *far > 0.0);
-    far.ok_or_else(|| "give metres above 0, or inf".into())
+    number(text, |far| far > 0.0, "give metres above 0, or inf")
 }
 
 /// Parses an angle in degrees that is possible for a flat image, and returns radians.
 pub fn parse_fov(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(value) if (1.0..=170.0).contains(&value) => Ok(value.to_radians()),
-        _ => Err("give degrees from 1 to 170".into()),
-    }
+    number(text, |fov| (1.0..=170.0).contains(&fov), "give degrees from 1 to 170").map(f32::to_radians)
 }
 
 #[cfg(test)]

@@ -8,27 +8,16 @@ use yoro_devices::adb::{DeviceError, quoted};
 use yoro_devices::experiment::ExperimentError;
 use yoro_files::FileError;
 
-/// The length of the longest message in characters, and that of the end, with the remedy, if its middle is left out.
-const LONGEST: usize = 2000;
-const END: usize = 600;
-
 /// Returns the message for an error in one line: its sentence, and the option that provides the remedy, if any.
 pub fn of(error: &anyhow::Error) -> String {
     let sentence = one_line(&sentence(error));
     option(error).map_or_else(|| sentence.clone(), |option| format!("{sentence} ({option})"))
 }
 
-/// Returns a message without control characters, which quoted files may contain, and shortened to what a person reads.
+/// Returns a message without control characters, which quoted files may contain.
 pub fn one_line(text: &str) -> String {
     let parts = text.split(char::is_control).map(str::trim).filter(|part| !part.is_empty());
-    let line = parts.collect::<Vec<_>>().join(" ");
-    let count = line.chars().count();
-    if count <= LONGEST {
-        return line;
-    }
-    let begin: String = line.chars().take(LONGEST - END).collect();
-    let end: String = line.chars().skip(count - END).collect();
-    format!("{begin} [{} characters left out] {end}", count - LONGEST)
+    parts.collect::<Vec<_>>().join(" ")
 }
 
 /// Returns an error followed by its causes. A cause that the error's own message already contains is not repeated.
@@ -108,9 +97,6 @@ mod tests {
     fn a_message_is_one_line_that_can_be_read() {
         let error = anyhow::anyhow!("a.jpg is damaged (Error:\r\n\tno marker\u{1b}[31m): copy it again\n");
         assert_eq!(of(&error), "a.jpg is damaged (Error: no marker [31m): copy it again");
-        let line = one_line(&format!("\"{}\": correct it", "é".repeat(500_000)));
-        assert!(line.chars().count() < LONGEST + 100 && line.ends_with("é\": correct it"), "{line}");
-        assert!(line.starts_with("\"éé") && line.contains("[498014 characters left out]"), "{line}");
     }
 
     #[test]

@@ -18,57 +18,41 @@ pub trait Group {
     /// The keys of the settings, in the order of the help.
     const KEYS: &'static [&'static str];
     /// Defaults other than those of the table, as `key=value`.
-    const DEFAULTS: &'static [&'static str] = &[];
+    const DEFAULTS: &'static [&'static str];
 }
 
-/// The settings of the renderer.
-#[derive(Clone, Copy, Debug)]
-pub struct Renderer;
+/// Defines groups by their keys, and defaults other than the table's.
+macro_rules! groups {
+    ($($(#[$doc:meta])* $name:ident $keys:tt $defaults:tt;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $name;
 
-impl Group for Renderer {
-    const KEYS: &'static [&'static str] = &["msaa"];
+        impl Group for $name {
+            const KEYS: &'static [&'static str] = &$keys;
+            const DEFAULTS: &'static [&'static str] = &$defaults;
+        }
+    )*};
 }
 
-/// The settings of the renderer that `yoro xr` has options for.
-#[derive(Clone, Copy, Debug)]
-pub struct HeadsetRenderer;
-
-impl Group for HeadsetRenderer {
-    const KEYS: &'static [&'static str] = &["msaa", "foveation"];
-}
-
-/// The settings of the renderer of image groups: each pixel belongs to one surface by default.
-#[derive(Clone, Copy, Debug)]
-pub struct OneSample;
-
-impl Group for OneSample {
-    const KEYS: &'static [&'static str] = Renderer::KEYS;
-    const DEFAULTS: &'static [&'static str] = &["msaa=1"];
-}
-
-/// The settings of the synthesis pipeline.
-#[derive(Clone, Copy, Debug)]
-pub struct Synthesis;
-
-impl Group for Synthesis {
-    const KEYS: &'static [&'static str] = &["pipeline", "imbuffer", "linear-interpolation", "strict"];
-}
-
-/// The settings of stereo frames.
-#[derive(Clone, Copy, Debug)]
-pub struct Stereo;
-
-impl Group for Stereo {
-    const KEYS: &'static [&'static str] =
-        &["pipeline", "imbuffer", "linear-interpolation", "strict", "guard-band", "holes", "switch"];
-}
-
-/// The settings of stereo frames whose pipelines are compared, each as its name says: none is switched to two renders.
-#[derive(Clone, Copy, Debug)]
-pub struct Compared;
-
-impl Group for Compared {
-    const KEYS: &'static [&'static str] = &["imbuffer", "linear-interpolation", "strict", "guard-band"];
+groups! {
+    /// The settings of the renderer.
+    Renderer ["msaa"] [];
+    /// The settings of the renderer that `yoro xr` has options for.
+    HeadsetRenderer ["msaa", "foveation"] [];
+    /// The settings of the renderer of image groups: each pixel belongs to one surface by default.
+    OneSample ["msaa"] ["msaa=1"];
+    /// The settings of the synthesis pipeline.
+    Synthesis ["pipeline", "imbuffer", "linear-interpolation", "strict"] [];
+    /// The settings of stereo frames.
+    Stereo ["pipeline", "imbuffer", "linear-interpolation", "strict", "guard-band", "holes", "switch"] [];
+    /// The settings of stereo frames whose pipelines are compared, each as its name says: none is switched to two renders.
+    Compared ["imbuffer", "linear-interpolation", "strict", "guard-band"] [];
+    /// The settings of the picture behind lenses that `yoro view` has options for. Its own `--screen` is in pixels; the
+    /// setting `screen` is in millimetres.
+    Lenses ["viewer", "method", "foveation"] ["method=yoro", "foveation=off"];
+    /// The setting of frames in levels.
+    Foveated ["foveation"] ["foveation=off"];
 }
 
 impl SettingOptions<Compared> {
@@ -76,25 +60,6 @@ impl SettingOptions<Compared> {
     pub fn options(&self, pipeline: Pipeline) -> StereoOptions {
         StereoOptions { policy: None, ..stereo_options(&self.settings, pipeline) }
     }
-}
-
-/// The settings of the picture behind lenses that `yoro view` has options for. Its own `--screen` is in pixels; the
-/// setting `screen` is in millimetres.
-#[derive(Clone, Copy, Debug)]
-pub struct Lenses;
-
-impl Group for Lenses {
-    const KEYS: &'static [&'static str] = &["viewer", "method", "foveation"];
-    const DEFAULTS: &'static [&'static str] = &["method=yoro", "foveation=off"];
-}
-
-/// The setting of frames in levels.
-#[derive(Clone, Copy, Debug)]
-pub struct Foveated;
-
-impl Group for Foveated {
-    const KEYS: &'static [&'static str] = &["foveation"];
-    const DEFAULTS: &'static [&'static str] = &["foveation=off"];
 }
 
 /// The options of a [`Group`]: `--KEY VALUE`; for switches `--KEY`, or `--no-KEY` if they are on by default.

@@ -138,14 +138,30 @@ pub fn exports() -> Vec<Export> {
     ]
 }
 
+/// Defines functions that free a handle of one kind.
+macro_rules! frees {
+    ($($name:ident $kind:literal;)*) => {
+        $(extern "C" fn $name(handle: Handle) {
+            camera().free($kind, handle);
+        })*
+    };
+}
+
+frees! {
+    ACameraManager_delete "camera managers";
+    ACameraMetadata_free "camera metadata";
+    ACaptureRequest_free "camera requests";
+    ACameraOutputTarget_free "camera targets";
+    ACaptureSessionOutputContainer_free "camera containers";
+    ACaptureSessionOutput_free "camera outputs";
+    AImageReader_delete "image readers";
+    AImage_delete "images";
+}
+
 extern "C" fn ACameraManager_create() -> Handle {
     let mut manager = std::ptr::null_mut();
     camera().make("camera managers", &raw mut manager);
     manager
-}
-
-extern "C" fn ACameraManager_delete(manager: Handle) {
-    camera().free("camera managers", manager);
 }
 
 /// `ACameraIdList`.
@@ -200,10 +216,6 @@ extern "C" fn ACameraMetadata_getConstEntry(metadata: *const c_void, tag: u32, t
     0
 }
 
-extern "C" fn ACameraMetadata_free(metadata: Handle) {
-    camera().free("camera metadata", metadata);
-}
-
 /// `ACameraDevice_StateCallbacks`.
 #[repr(C)]
 struct Callbacks {
@@ -244,10 +256,6 @@ extern "C" fn ACameraDevice_createCaptureRequest(device: Handle, _: c_int, to: *
     camera().make("camera requests", to)
 }
 
-extern "C" fn ACaptureRequest_free(request: Handle) {
-    camera().free("camera requests", request);
-}
-
 extern "C" fn ACaptureRequest_addTarget(request: Handle, target: Handle) -> c_int {
     camera().check("camera requests", request);
     camera().check("camera targets", target);
@@ -259,16 +267,8 @@ extern "C" fn ACameraOutputTarget_create(window: Handle, to: *mut Handle) -> c_i
     camera().make("camera targets", to)
 }
 
-extern "C" fn ACameraOutputTarget_free(target: Handle) {
-    camera().free("camera targets", target);
-}
-
 extern "C" fn ACaptureSessionOutputContainer_create(to: *mut Handle) -> c_int {
     camera().make("camera containers", to)
-}
-
-extern "C" fn ACaptureSessionOutputContainer_free(container: Handle) {
-    camera().free("camera containers", container);
 }
 
 extern "C" fn ACaptureSessionOutputContainer_add(container: Handle, output: Handle) -> c_int {
@@ -280,10 +280,6 @@ extern "C" fn ACaptureSessionOutputContainer_add(container: Handle, output: Hand
 extern "C" fn ACaptureSessionOutput_create(window: Handle, to: *mut Handle) -> c_int {
     camera().check("image readers", window);
     camera().make("camera outputs", to)
-}
-
-extern "C" fn ACaptureSessionOutput_free(output: Handle) {
-    camera().free("camera outputs", output);
 }
 
 extern "C" fn ACameraDevice_createCaptureSession(
@@ -337,10 +333,6 @@ extern "C" fn AImageReader_new(
     camera().make("image readers", to)
 }
 
-extern "C" fn AImageReader_delete(reader: Handle) {
-    camera().free("image readers", reader);
-}
-
 /// The reader serves as its own window.
 extern "C" fn AImageReader_getWindow(reader: Handle, to: *mut Handle) -> c_int {
     camera().check("image readers", reader);
@@ -378,37 +370,23 @@ extern "C" fn AImageReader_acquireLatestImage(reader: Handle, to: *mut Handle) -
     camera.make("images", to)
 }
 
-extern "C" fn AImage_delete(image: Handle) {
-    camera().free("images", image);
+/// Defines getters of an image's numbers.
+macro_rules! numbers {
+    ($($name:ident($($plane:ty)?) $value:expr;)*) => {
+        $(extern "C" fn $name(image: *const c_void, $(_: $plane,)? to: *mut i32) -> c_int {
+            camera().check("images", image);
+            // SAFETY: the application gives room for a number.
+            unsafe { *to = $value };
+            0
+        })*
+    };
 }
 
-fn size_of_image(image: *const c_void, axis: usize, to: *mut i32) -> c_int {
-    camera().check("images", image);
-    // SAFETY: the application gives room for a number.
-    unsafe { *to = camera().size[axis].load(Ordering::Acquire) };
-    0
-}
-
-extern "C" fn AImage_getWidth(image: *const c_void, to: *mut i32) -> c_int {
-    size_of_image(image, 0, to)
-}
-
-extern "C" fn AImage_getHeight(image: *const c_void, to: *mut i32) -> c_int {
-    size_of_image(image, 1, to)
-}
-
-extern "C" fn AImage_getPlaneRowStride(image: *const c_void, _: c_int, to: *mut i32) -> c_int {
-    camera().check("images", image);
-    // SAFETY: the application gives room for a number.
-    unsafe { *to = lock(&camera().image).1 as i32 };
-    0
-}
-
-extern "C" fn AImage_getPlanePixelStride(image: *const c_void, _: c_int, to: *mut i32) -> c_int {
-    camera().check("images", image);
-    // SAFETY: the application gives room for a number.
-    unsafe { *to = 1 };
-    0
+numbers! {
+    AImage_getWidth() camera().size[0].load(Ordering::Acquire);
+    AImage_getHeight() camera().size[1].load(Ordering::Acquire);
+    AImage_getPlaneRowStride(c_int) lock(&camera().image).1 as i32;
+    AImage_getPlanePixelStride(c_int) 1;
 }
 
 extern "C" fn AImage_getPlaneData(

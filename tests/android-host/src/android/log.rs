@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use crate::bionic::{text, thread_name};
 use crate::exports::{Export, System, exports};
-use crate::host::{fatal, host, lock};
+use crate::host::{host, lock};
 use crate::summary::LogLine;
 
 /// The tags of the application, also used by its telemetry, and of the API layer.
@@ -101,7 +101,7 @@ impl Log {
 /// Returns the functions that liblog.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
-        System::Log, 1: [__android_log_assert, __android_log_buf_write, __android_log_write];
+        System::Log, 1: [__android_log_buf_write, __android_log_write];
     ]
 }
 
@@ -124,15 +124,4 @@ unsafe extern "C" fn __android_log_buf_write(
 ) -> c_int {
     // SAFETY: the same contract as this function's.
     unsafe { __android_log_write(priority, tag, message) }
-}
-
-/// Reports the condition and the format as they are, since the format's variadic arguments cannot be read here.
-unsafe extern "C" fn __android_log_assert(
-    condition: *const c_char,
-    tag: *const c_char,
-    format: *const c_char,
-) -> ! {
-    // SAFETY: null or terminated strings by contract.
-    let (condition, tag, format) = unsafe { (text(condition), text(tag), text(format)) };
-    fatal(format!("the application called __android_log_assert({condition:?}, {tag:?}, {format:?})"))
 }

@@ -64,9 +64,7 @@ impl Window {
 /// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
-        System::Android, 1: [
-            ANativeWindow_acquire, ANativeWindow_release, ANativeWindow_setBuffersGeometry,
-        ];
+        System::Android, 1: [ANativeWindow_acquire, ANativeWindow_release];
         System::Android, 30: [ANativeWindow_setFrameRate];
     ]
 }
@@ -90,22 +88,6 @@ extern "C" fn ANativeWindow_acquire(window: &Window) {
 extern "C" fn ANativeWindow_release(window: &Window) {
     known(window);
     window.reference(-1);
-}
-
-/// Zeros mean the window's own size. Smaller buffers, which a display would scale, are not supported.
-extern "C" fn ANativeWindow_setBuffersGeometry(
-    window: &Window,
-    width: i32,
-    height: i32,
-    _format: i32,
-) -> i32 {
-    known(window);
-    if (width, height) != (0, 0) && (width, height) != window.size() {
-        host().violation(format!(
-            "ANativeWindow_setBuffersGeometry({width}, {height}): the host does not simulate scaled buffers"
-        ));
-    }
-    0
 }
 
 extern "C" fn ANativeWindow_setFrameRate(window: &Window, rate: f32, _compatibility: i8) -> c_int {

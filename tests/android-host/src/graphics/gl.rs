@@ -227,12 +227,9 @@ macro_rules! names {
 names! {
     "buffer": glGenBuffers c"glGenBuffers", glDeleteBuffers c"glDeleteBuffers";
     "framebuffer": glGenFramebuffers c"glGenFramebuffers", glDeleteFramebuffers c"glDeleteFramebuffers";
-    "program pipeline": glGenProgramPipelines c"glGenProgramPipelines", glDeleteProgramPipelines c"glDeleteProgramPipelines";
     "query": glGenQueries c"glGenQueries", glDeleteQueries c"glDeleteQueries";
     "renderbuffer": glGenRenderbuffers c"glGenRenderbuffers", glDeleteRenderbuffers c"glDeleteRenderbuffers";
-    "sampler": glGenSamplers c"glGenSamplers", glDeleteSamplers c"glDeleteSamplers";
     "texture": glGenTextures c"glGenTextures", glDeleteTextures c"glDeleteTextures";
-    "transform feedback": glGenTransformFeedbacks c"glGenTransformFeedbacks", glDeleteTransformFeedbacks c"glDeleteTransformFeedbacks";
     "vertex array": glGenVertexArrays c"glGenVertexArrays", glDeleteVertexArrays c"glDeleteVertexArrays";
 }
 
@@ -308,10 +305,8 @@ pub fn function(name: &str) -> Option<usize> {
         return None;
     }
     let ours = ours! {
-        glGenBuffers glDeleteBuffers glGenFramebuffers glDeleteFramebuffers glGenProgramPipelines
-        glDeleteProgramPipelines glGenQueries glDeleteQueries glGenRenderbuffers glDeleteRenderbuffers glGenSamplers
-        glDeleteSamplers glGenTextures glDeleteTextures glGenTransformFeedbacks glDeleteTransformFeedbacks
-        glGenVertexArrays glDeleteVertexArrays glCreateShader glDeleteShader glCreateProgram glDeleteProgram glFenceSync
+        glGenBuffers glDeleteBuffers glGenFramebuffers glDeleteFramebuffers glGenQueries glDeleteQueries
+        glGenRenderbuffers glDeleteRenderbuffers glGenTextures glDeleteTextures glGenVertexArrays glDeleteVertexArrays glCreateShader glDeleteShader glCreateProgram glDeleteProgram glFenceSync
         glClientWaitSync glDeleteSync glDebugMessageCallback
     };
     let symbol = CString::new(name).ok()?;

@@ -34,7 +34,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
     };
     Some(match member.name.as_str() {
         "<init>" => Value::Void,
-        "loadClass" | "forName" => Value::object(Object::class_of(&text(0)?.replace('.', "/"))),
+        "forName" => Value::object(Object::class_of(&text(0)?.replace('.', "/"))),
         "getName" if receiver.class == "java/lang/Class" => {
             Value::object(Object::string(&class.replace('/', ".")))
         }
@@ -49,7 +49,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         | "getDecorView"
         | "getWindowManager"
         | "getDefaultDisplay"
-        | "getDisplay"
         | "getMode"
         | "getAttributes"
         | "createChooser"
@@ -57,14 +56,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         | "getPackageManager"
         | "currentThread" => Value::object(Object::new(member.returned_class()?, Data::None)),
         "getApplicationContext" => Value::object(Object::new("android/app/Application", Data::None)),
-        "setContextClassLoader"
-        | "setName"
-        | "setSystemUiVisibility"
-        | "setAttributes"
-        | "addFlags"
-        | "setFlags"
-        | "hide"
-        | "show"
+        "setContextClassLoader" | "setName" | "setSystemUiVisibility" | "setAttributes" | "hide" | "show"
             if member.signature.ends_with(")V") =>
         {
             Value::Void
@@ -127,7 +119,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             };
             Value::Object(crate::openxr::query(&text(0)?, columns))
         }
-        "getColumnIndex" | "moveToNext" | "getString" | "isNull" | "close"
+        "getColumnIndex" | "moveToNext" | "getString" | "close"
             if matches!(receiver.data, Data::Cursor(_)) =>
         {
             let Data::Cursor(cursor) = &receiver.data else { return None };
@@ -143,7 +135,6 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
                     Value::Boolean(cursor.moves.fetch_add(1, Ordering::AcqRel) < cursor.rows.len())
                 }
                 "getString" => Value::Object(cell(int(0)).map(|text| Object::string(text))),
-                "isNull" => Value::Boolean(cell(int(0)).is_none()),
                 _ => Value::Void,
             }
         }

@@ -81,12 +81,8 @@ pub enum Value {
     Boolean(bool),
     /// `byte`, `char`, `short` or `int`.
     Int(i32),
-    /// `long`.
-    Long(i64),
     /// `float`.
     Float(f32),
-    /// `double`.
-    Double(f64),
     /// An object or null.
     Object(Option<Arc<Object>>),
 }

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use jni_sys::{
     JNI_EDETACHED, JNI_ERR, JNI_OK, JNI_VERSION_1_6, JNIEnv, JNIInvokeInterface_, JNINativeInterface_,
-    JavaVM, jboolean, jdouble, jfieldID, jfloat, jint, jlong, jmethodID, jobject, jvalue,
+    JavaVM, jboolean, jfieldID, jfloat, jint, jmethodID, jobject, jvalue,
 };
 
 use super::objects::Kind;
@@ -102,8 +102,8 @@ fn fill(table: &mut jni_sys::JNINativeInterface__1_6) {
         ExceptionClear ExceptionCheck FatalError PushLocalFrame PopLocalFrame EnsureLocalCapacity NewLocalRef
         NewGlobalRef NewWeakGlobalRef DeleteLocalRef DeleteGlobalRef DeleteWeakGlobalRef IsSameObject
         GetObjectClass IsInstanceOf GetMethodID GetFieldID NewObjectA CallObjectMethodA CallBooleanMethodA
-        CallIntMethodA CallLongMethodA CallFloatMethodA CallDoubleMethodA CallVoidMethodA GetObjectField
-        GetBooleanField GetIntField GetLongField GetFloatField GetDoubleField SetFloatField NewStringUTF
+        CallIntMethodA CallFloatMethodA CallVoidMethodA GetObjectField
+        GetBooleanField GetIntField GetFloatField SetFloatField NewStringUTF
         GetStringUTFChars ReleaseStringUTFChars GetArrayLength NewObjectArray GetObjectArrayElement
         SetObjectArrayElement MonitorEnter MonitorExit GetJavaVM
     }
@@ -113,16 +113,12 @@ fn fill(table: &mut jni_sys::JNINativeInterface__1_6) {
     table.CallStaticObjectMethodA = CallObjectMethodA;
     table.CallStaticBooleanMethodA = CallBooleanMethodA;
     table.CallStaticIntMethodA = CallIntMethodA;
-    table.CallStaticLongMethodA = CallLongMethodA;
     table.CallStaticFloatMethodA = CallFloatMethodA;
-    table.CallStaticDoubleMethodA = CallDoubleMethodA;
     table.CallStaticVoidMethodA = CallVoidMethodA;
     table.GetStaticObjectField = GetObjectField;
     table.GetStaticBooleanField = GetBooleanField;
     table.GetStaticIntField = GetIntField;
-    table.GetStaticLongField = GetLongField;
     table.GetStaticFloatField = GetFloatField;
-    table.GetStaticDoubleField = GetDoubleField;
 }
 
 unsafe extern "system" fn GetEnv(_machine: *mut JavaVM, out: *mut *mut c_void, _version: jint) -> jint {
@@ -335,9 +331,7 @@ unsafe fn arguments(signature: &str, values: *const jvalue) -> Vec<Value> {
                 'C' => Value::Int(i32::from(value.c)),
                 'S' => Value::Int(i32::from(value.s)),
                 'I' => Value::Int(value.i),
-                'J' => Value::Long(value.j),
                 'F' => Value::Float(value.f),
-                'D' => Value::Double(value.d),
                 'L' | '[' => {
                     let mut name = kind;
                     while name == '[' {
@@ -361,9 +355,7 @@ fn invent(member: &Member) -> Value {
     match member.returned().chars().next() {
         Some('V') => Value::Void,
         Some('Z') => Value::Boolean(false),
-        Some('J') => Value::Long(0),
         Some('F') => Value::Float(0.0),
-        Some('D') => Value::Double(0.0),
         Some('L') => Value::object(match member.returned_class().unwrap_or_default() {
             "java/lang/String" => Object::string(""),
             "java/lang/Class" => Object::class_of("java/lang/Object"),
@@ -395,9 +387,7 @@ fn checked(value: Value, member: &Member) -> Value {
         Value::Void => promised == 'V',
         Value::Boolean(_) => promised == 'Z',
         Value::Int(_) => matches!(promised, 'B' | 'C' | 'S' | 'I'),
-        Value::Long(_) => promised == 'J',
         Value::Float(_) => promised == 'F',
-        Value::Double(_) => promised == 'D',
         Value::Object(_) => matches!(promised, 'L' | '['),
     };
     if fits {
@@ -438,9 +428,7 @@ calls! {
     CallObjectMethodA: Value::Object(object) => local(object), jobject;
     CallBooleanMethodA: Value::Boolean(value) => value, jboolean;
     CallIntMethodA: Value::Int(value) => value, jint;
-    CallLongMethodA: Value::Long(value) => value, jlong;
     CallFloatMethodA: Value::Float(value) => value, jfloat;
-    CallDoubleMethodA: Value::Double(value) => value, jdouble;
     CallVoidMethodA: Value::Void => (), ();
 }
 
@@ -463,9 +451,7 @@ fields! {
     GetObjectField: Value::Object(object) => local(object), jobject;
     GetBooleanField: Value::Boolean(value) => value, jboolean;
     GetIntField: Value::Int(value) => value, jint;
-    GetLongField: Value::Long(value) => value, jlong;
     GetFloatField: Value::Float(value) => value, jfloat;
-    GetDoubleField: Value::Double(value) => value, jdouble;
 }
 
 unsafe extern "system" fn SetFloatField(_env: Env, receiver: jobject, field: jfieldID, value: f32) {

@@ -21,12 +21,9 @@ pub struct Package {
 
 /// Returns all packages that a workspace may depend on, on any platform, by name and version.
 pub fn all(manifest: &str) -> anyhow::Result<BTreeMap<(String, String), Package>> {
-    parse(&cargo::output(&["metadata", "--format-version", "1", "--locked", "--manifest-path", manifest])?)
-}
-
-fn parse(text: &str) -> anyhow::Result<BTreeMap<(String, String), Package>> {
-    let metadata: Value =
-        serde_json::from_str(text).context("cargo metadata prints something else than JSON")?;
+    let arguments = ["metadata", "--format-version", "1", "--locked", "--manifest-path", manifest];
+    let metadata = serde_json::from_str::<Value>(&cargo::output(&arguments)?);
+    let metadata = metadata.context("cargo metadata prints something else than JSON")?;
     let packages = metadata["packages"].as_array().context("cargo metadata prints no packages")?;
     let others = packages.iter().filter(|package| !package["source"].is_null());
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
@@ -58,23 +55,4 @@ pub fn contained(package: &str, target: &str, features: &[&str]) -> anyhow::Resu
 fn name_and_version(line: &str) -> Option<(String, String)> {
     let mut words = line.split(' ');
     Some((words.next()?.to_owned(), words.next()?.strip_prefix('v')?.to_owned()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_and_metadata_are_read() {
-        let of = name_and_version("yoro-gl v0.1.0 (/some where) (*)");
-        assert_eq!(of, Some(("yoro-gl".to_owned(), "0.1.0".to_owned())));
-        let text = r#"{"packages": [
-            {"name": "a", "version": "1.0.0", "source": null, "license": "MIT", "manifest_path": "/a/Cargo.toml"},
-            {"name": "b", "version": "2.0.0", "source": "registry", "license": null, "authors": ["B"],
-             "manifest_path": "/b/Cargo.toml"}]}"#;
-        let packages = parse(text).unwrap();
-        let package = &packages[&("b".to_owned(), "2.0.0".to_owned())];
-        assert_eq!((packages.len(), package.licence.as_str(), package.authors[0].as_str()), (1, "", "B"));
-        assert_eq!(package.folder, PathBuf::from("/b"));
-    }
 }

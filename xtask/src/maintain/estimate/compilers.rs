@@ -89,17 +89,8 @@ impl Compilers {
             eprintln!("fetching Mesa's compilers for mobile GPUs: 140 MB, once");
             let sources = packages::debian_sources(&[RELEASE, BACKPORTS])?;
             let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], Some(&sources))?;
-            apt.update()?;
             let others = OTHERS.map(str::to_owned);
-            for package in apt.download(&[newest.to_vec(), others.to_vec()].concat())? {
-                // qemu's package contains a program of several megabytes for each kind of processor.
-                let is_qemu =
-                    package.file_name().is_some_and(|name| name.to_string_lossy().starts_with("qemu-user"));
-                let qemu = format!("./{QEMU}");
-                let only: &[&str] = if is_qemu { &[&qemu] } else { &[] };
-                packages::unpack(&package, &compilers.root(), only, &WITHOUT)?;
-            }
-            apt.remove();
+            apt.unpack(&[newest.to_vec(), others.to_vec()].concat(), &compilers.root(), &WITHOUT)?;
             for file in [QEMU, PYTHON] {
                 if !compilers.root().join(file).exists() {
                     bail!("{file} is not where Debian's packages have it");

@@ -31,40 +31,11 @@ pub use table::{Row, Table};
 /// The committed table, relative to the workspace.
 const TABLE: &str = "xtask/helpers/estimate/shader-cost.csv";
 
-/// An accepted fault of a program on a GPU.
-struct Exception {
-    /// The GPU, as in [`Row::gpu`].
-    gpu: &'static str,
-    /// How [`Row::program`] begins.
-    program: &'static str,
-    fault: Fault,
-    reason: &'static str,
-}
-
-impl Exception {
-    /// True if the exception applies to this shader.
-    fn is_of(&self, row: &Row) -> bool {
-        self.gpu == row.gpu && row.program.starts_with(self.program)
-    }
-}
-
-/// A fault that a compiled program must not have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Fault {
-    Spills,
-    /// Fewer than half of the waves that the GPU can have in flight are in flight.
-    FewWaves,
-}
-
-/// The file that contains `EXCEPTIONS`, for messages.
-const EXCEPTIONS_IN: &str = "xtask/src/maintain/estimate/mod.rs";
-
-const EXCEPTIONS: [Exception; 1] = [Exception {
-    gpu: "a650",
-    program: "synthesis/gather/tiles.frag DEPTH_PAIRS",
-    fault: Fault::FewWaves,
-    reason: "it gathers twice as much; one fragment for each 128 pixels",
-}];
+/// The GPUs and programs, by their beginning, that may have fewer than half of the waves in flight.
+const FEW_WAVES: [(&str, &str); 1] = [
+    // It gathers twice as much; one fragment for each 128 pixels.
+    ("a650", "synthesis/gather/tiles.frag DEPTH_PAIRS"),
+];
 
 /// Which programs and GPUs to compile for, and what to do with the results.
 #[derive(Clone, Debug, Default)]
@@ -108,15 +79,7 @@ pub fn report(
         found.mesa = run.mesa;
     }
     let mut text = described(&gpus, &found) + "\n";
-    for finding in found.rows.iter().filter_map(judge) {
-        match finding {
-            Finding::Fault(fault) => faults.push(fault),
-            Finding::Accepted(what) => text += &format!("accepted: {what}\n"),
-        }
-    }
-    for Exception { program, gpu, .. } in stale(&found.rows) {
-        text += &format!("{program} needs no exception on {gpu} any more: remove it from {EXCEPTIONS_IN}\n");
-    }
+    faults.extend(found.rows.iter().filter_map(fault));
     for fault in &faults {
         text += &format!("FAULT: {fault}\n");
     }
@@ -199,44 +162,22 @@ fn refusals(gpu: &Gpu, names: &[String], run: &Run) -> Vec<String> {
     faults
 }
 
-/// A described fault of a compiled shader.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Finding {
-    /// The fault is an error.
-    Fault(String),
-    /// The fault is known and has a reason.
-    Accepted(String),
-}
-
-fn fault(row: &Row) -> Option<Fault> {
-    let most = row.gpu.parse::<Gpu>().ok()?.compiler.most_waves();
-    if row.spills > 0 { Some(Fault::Spills) } else { (2 * row.waves < most).then_some(Fault::FewWaves) }
-}
-
-/// Returns a description of a shader's fault, or `None` if it has none.
-fn judge(row: &Row) -> Option<Finding> {
+/// Returns what is wrong with a compiled shader, if anything: it spills, or fewer than half of the waves that the GPU can
+/// have in flight are in flight.
+fn fault(row: &Row) -> Option<String> {
     let gpu: Gpu = row.gpu.parse().ok()?;
-    let fault = fault(row)?;
-    let what = match fault {
-        Fault::Spills => format!("spills: {} accesses to memory in the place of registers", row.spills),
-        Fault::FewWaves => format!("has only {} of {} waves in flight", row.waves, gpu.compiler.most_waves()),
+    let most = gpu.compiler.most_waves();
+    let is_known = FEW_WAVES.iter().any(|(gpu, program)| row.gpu == *gpu && row.program.starts_with(program));
+    let what = if row.spills > 0 {
+        format!("spills: {} accesses to memory in the place of registers", row.spills)
+    } else if 2 * row.waves < most && !is_known {
+        format!("has only {} of {most} waves in flight", row.waves)
+    } else {
+        return None;
     };
-    let what = format!("{} ({}) on {} {what}", row.program, row.stage, gpu.title);
-    let exception = EXCEPTIONS.iter().find(|exception| exception.is_of(row) && exception.fault == fault);
-    Some(match exception {
-        Some(exception) => Finding::Accepted(format!("{what}: {}", exception.reason)),
-        None => {
-            Finding::Fault(format!("{what}: make it smaller, or name it with a reason in {EXCEPTIONS_IN}"))
-        }
-    })
-}
-
-/// Returns the exceptions whose shaders are among the rows and no longer have the fault.
-fn stale<'a>(rows: &'a [Row]) -> impl Iterator<Item = &'static Exception> + 'a {
-    EXCEPTIONS.iter().filter(|exception| {
-        let mut own = rows.iter().filter(|row| exception.is_of(row)).peekable();
-        own.peek().is_some() && !own.any(|row| fault(row) == Some(exception.fault))
-    })
+    let Row { program, stage, .. } = row;
+    let remedy = "make it smaller, or name it with a reason in xtask/src/maintain/estimate/mod.rs";
+    Some(format!("{program} ({stage}) on {} {what}: {remedy}", gpu.title))
 }
 
 /// Returns a paragraph per GPU, with a line for each shader.
@@ -288,23 +229,14 @@ mod tests {
 
     #[test]
     fn spills_and_few_waves_are_faults_unless_accepted() {
-        let is_fault = |row: &Row| matches!(judge(row), Some(Finding::Fault(_)));
-        assert_eq!(judge(&row("a650", "x.frag", 8, 0)), None);
-        let Some(Finding::Fault(few)) = judge(&row("a650", "x.frag", 7, 0)) else { panic!("no fault") };
+        assert_eq!(fault(&row("a650", "x.frag", 8, 0)), None);
+        let few = fault(&row("a650", "x.frag", 7, 0)).unwrap();
         assert!(few.contains("7 of 16 waves"), "{few}");
-        assert!(is_fault(&row("g57", "x.frag", 2, 3)));
-        assert_eq!(judge(&row("g57", "x.frag", 1, 0)), None);
-        let known = judge(&row("a650", EXCEPTIONS[0].program, 7, 0));
-        assert!(matches!(known, Some(Finding::Accepted(_))), "{known:?}");
-        assert!(is_fault(&row("a650", EXCEPTIONS[0].program, 16, 2)));
-        assert!(is_fault(&row("g52", EXCEPTIONS[0].program, 0, 0)));
-    }
-
-    #[test]
-    fn exceptions_that_are_not_needed_are_listed() {
-        let of = |waves| stale(&[row("a650", EXCEPTIONS[0].program, waves, 0)]).count();
-        assert_eq!((of(7), of(8)), (0, 1));
-        assert_eq!(stale(&[]).count(), 0);
+        assert!(fault(&row("g57", "x.frag", 2, 3)).is_some());
+        assert_eq!(fault(&row("g57", "x.frag", 1, 0)), None);
+        assert_eq!(fault(&row("a650", FEW_WAVES[0].1, 7, 0)), None);
+        assert!(fault(&row("a650", FEW_WAVES[0].1, 16, 2)).is_some());
+        assert!(fault(&row("g52", FEW_WAVES[0].1, 0, 0)).is_some());
     }
 
     #[test]
@@ -316,12 +248,5 @@ mod tests {
         assert_eq!(faults.len(), 2, "{faults:?}");
         assert!(faults[0].starts_with("b is refused on Mali-G52: 0:1: no"), "{}", faults[0]);
         assert!(faults[1].starts_with("c crashes"), "{}", faults[1]);
-    }
-
-    #[test]
-    fn a_filter_that_fits_nothing_is_refused() {
-        let programs = vec![serde_json::json!({"name": "render/sky.frag"})];
-        assert_eq!(chosen(programs.clone(), Some("sky")).unwrap().len(), 1);
-        assert!(chosen(programs, Some("march")).is_err());
     }
 }

@@ -34,18 +34,11 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Document, Option<Vec<u
     let unusable = |what: String| SceneError::unusable(path, what);
     let invalid =
         |what: String| unusable(format!("this is not valid glTF 2.0 ({what}); export the model again"));
-    let first =
-        || unusable("this is glTF 1.0, and only 2.0 can be read: export the model again as glTF 2.0".into());
     let (text, blob) = if bytes.starts_with(b"glTF") {
-        let number = |at: usize| {
-            let bytes = bytes.get(at..at + 4)?;
-            Some(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
-        };
-        if number(4) == Some(1) {
-            return Err(first());
-        }
         // The crate subtracts the header's size from this length unchecked.
-        if number(8).is_none_or(|length| length < 20) {
+        let length =
+            bytes.get(8..).and_then(|rest| rest.first_chunk()).map(|bytes| u32::from_le_bytes(*bytes));
+        if length.is_none_or(|length| length < 20) {
             return Err(unusable("the binary header is cut off; export the model again".into()));
         }
         let glb = gltf::Glb::from_slice(bytes).map_err(|e| invalid(e.to_string()))?;
@@ -55,12 +48,6 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Document, Option<Vec<u
     };
     let mut root: Value = serde_json::from_slice(&text).map_err(|e| invalid(e.to_string()))?;
     drop(text);
-    let version =
-        root.pointer("/asset/version").map(|v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
-    // Version 1.0 has maps where 2.0 has lists.
-    if version.is_some_and(|v| v == "1" || v.starts_with("1.")) || root["meshes"].is_object() {
-        return Err(first());
-    }
     complete(&mut root);
     let root = serde_json::from_value(root).map_err(|e| invalid(e.to_string()))?;
     Ok((Document::from_json_without_validation(root), blob))
@@ -229,17 +216,7 @@ pub(super) fn data_uri(uri: &str) -> Option<Option<Vec<u8>>> {
 }
 
 fn percent_decoded(text: &str) -> Vec<u8> {
-    let bytes = text.as_bytes();
-    let mut out = Vec::with_capacity(bytes.len());
-    let mut i = 0;
-    while i < bytes.len() {
-        let code = (bytes[i] == b'%').then(|| bytes.get(i + 1..i + 3)).flatten();
-        let byte =
-            code.and_then(|c| std::str::from_utf8(c).ok()).and_then(|c| u8::from_str_radix(c, 16).ok());
-        out.push(byte.unwrap_or(bytes[i]));
-        i += if byte.is_some() { 3 } else { 1 };
-    }
-    out
+    percent_encoding::percent_decode_str(text).collect()
 }
 
 pub(super) fn external(path: &Path, uri: &str) -> Option<std::path::PathBuf> {
