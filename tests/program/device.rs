@@ -85,7 +85,7 @@ fn a_dry_run_is_a_plan() {
 }
 
 #[test]
-fn a_saved_log_is_a_table_and_a_capture() {
+fn a_saved_log_becomes_a_capture() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     let said = succeed(at, &format!("device logcat {RECORDED} --out kept")).stdout;

@@ -129,6 +129,9 @@ fn over(setting: &SettingData, name: &str, base: &str) -> Option<f64> {
     Some(setting.find(name)?.ratio(setting.find(base)?, metric::FRAME_MS)?.median)
 }
 
+/// A column: its head, and the text of a contender.
+type Column<'a> = (&'a str, &'a dyn Fn(&str) -> Option<String>);
+
 /// Returns the means over all scenes at one field of view.
 fn means(suite: &SuiteData, label: &str) -> Table {
     let average = |name: &str, metric: &str| {
@@ -143,7 +146,7 @@ fn means(suite: &SuiteData, label: &str) -> Table {
         fixed(geometric_mean(suite.labelled(label).filter_map(|setting| over(setting, name, base))), 2)
     };
     let [own, synthesized] = metric::PERIPHERY_FLICKER;
-    let columns: [(&str, &dyn Fn(&str) -> Option<String>); 9] = [
+    let columns: [Column<'_>; 9] = [
         ("time over two full renders", &|name| ratio(name, CONVENTIONAL)),
         ("over two alike", &|name| ratio(name, &alike(name)).filter(|_| name != MONO)),
         ("shaded", &|name| fixed(average(name, metric::SHADED), 3)),
