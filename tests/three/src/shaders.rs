@@ -7,14 +7,13 @@ use std::fmt::Write as _;
 use yoro_test_support::compiled::preprocessed;
 
 /// Each constant of the module, and the file of `yoro-shaders` that it is made from.
-const TEXTS: [(&str, &str); 7] = [
+const TEXTS: [(&str, &str); 6] = [
     ("screenVertex", "screen.vert"),
     ("marchVertex", "synthesis/march.vert"),
     ("guessedDepth", "synthesis/guessed_depth.frag"),
     ("tiles", "synthesis/gather/tiles.frag"),
     ("spans", "synthesis/gather/spans.frag"),
     ("march", "synthesis/gather/march.frag"),
-    ("nearFraction", "stereo/near_fraction.frag"),
 ];
 /// The precisions that these shaders need; three.js adds the version.
 const PRECISIONS: &str =
@@ -33,8 +32,9 @@ pub fn module() -> anyhow::Result<String> {
     );
     let mut texts = Vec::new();
     for (name, source) in TEXTS {
-        // Objects that come later are hidden by depth.
-        let text = yoro_shaders::assemble(source, "300 es", &[("WRITE_DEPTH", String::new())]).unwrap().text;
+        // Objects that come later are hidden by depth. Whoever fills holes leaves out what discards them.
+        let defines = ["WRITE_DEPTH", "OPEN_HOLES"].map(|name| (name, String::new()));
+        let text = yoro_shaders::assemble(source, "300 es", &defines).unwrap().text;
         let text = preprocessed(name, &text)?;
         let is_code =
             |line: &&str| !line.is_empty() && !line.starts_with(['#']) && !line.starts_with("precision ");

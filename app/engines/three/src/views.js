@@ -82,7 +82,7 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
   const firstRow = y + rowOffset;
   const [across, up] = maps[1].map((n, i) => n * TILE[i]);
   return {
-    size, maps, frustum, constant, slope, whole: [width, height],
+    size, maps, frustum, constant, slope, target, whole: [width, height],
     uniforms: {
       source_size: size,
       target_size: [width, height],
