@@ -1,5 +1,5 @@
 import {
-  DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, LinearFilter, Matrix4, UnsignedByteType, UnsignedInt248Type, UnsignedIntType, WebGLRenderTarget,
+  DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, Matrix4, UnsignedInt248Type, WebGLRenderTarget,
 } from 'three';
 import { asEyes } from './answers.js';
 import { Chooser } from './choice.js';
@@ -33,12 +33,38 @@ const isOfOneEye = (camera) => camera?.isPerspectiveCamera && !camera.isArrayCam
  * ```
  */
 export class StereoSynthesis {
-  #stencil;
+  /** 'synthesized'; 'rendered' for three's own two eyes; 'auto' for the cheapest way, or with rendered holes the best one that
+   * holds the display's rate. */
+  mode = 'auto';
+  /** The eye that is rendered: 'left' or 'right'. */
+  dominantEye = 'right';
+  /** What the rendered eye does not see: 'filled' with what lies beside it, or 'rendered': opaque objects that the other eye
+   * sees are drawn once more. */
+  holes = 'filled';
+  /** Samples of the rendered eye's anti-aliasing: 4 if the renderer has `antialias: true`, otherwise 0. */
+  samples;
+  /** From this distance on, nothing is missing at the other eye's outer border. */
+  guardBand = 1;
+  /** With `auto`, both eyes are rendered while half of the view is nearer. */
+  nearLimit = 0.4;
+  /** How much fewer pixels there are where the eyes do not look: 'off', 'low', 'medium' or 'high'. Null: in a session as
+   * `renderer.xr.getFoveation()` says, on a canvas 'off'. */
+  foveation = null;
+  /** Where the eyes look, as a direction in the world; null for straight ahead. */
+  gaze = null;
+  /** A mask of layers: objects on them are drawn for both eyes, after the synthesis, such as hands. */
+  bothEyes = 0;
+  /** How the last frame was made: 'synthesized' or 'rendered'. */
+  way = null;
+  /** Why both eyes had to be rendered in the last frame, in a sentence, or null. */
+  trouble = null;
+
+  #halves = new Halves();
   #chooser = new Chooser();
   #timer;
   /** Reads what is near. */
   #share;
-  #halves = new Halves();
+  #encoding;
   #parts;
   #between = new Matrix4();
   /** What is made for the present kind of target. */
@@ -51,7 +77,6 @@ export class StereoSynthesis {
   /** The passes of `synthesize`. */
   #given = null;
   #drawnTo;
-  #encoding;
   /** True if three collects frames in a buffer of linear colour (its `outputBufferType`). */
   #isBuffered = false;
   /** What the headset was asked for, and by whom. */
@@ -65,50 +90,22 @@ export class StereoSynthesis {
 
   /**
    * @param {import('three').WebGLRenderer} renderer
-   * @param {Object} [options]
-   * @param {'auto'|'synthesized'|'rendered'} [options.mode='auto'] - See `mode`.
-   * @param {'left'|'right'} [options.dominantEye='right'] - The eye that is rendered.
-   * @param {'filled'|'rendered'} [options.holes='filled'] - See `holes`.
-   * @param {number} [options.samples] - Samples of the rendered eye's anti-aliasing. Default: 4 if the renderer has
-   * `antialias: true`, otherwise 0.
-   * @param {number} [options.guardBand=1] - From this distance on, nothing is missing at the other eye's outer border.
-   * @param {number} [options.nearLimit=0.4] - With `auto`, both eyes are rendered while half of the view is nearer.
-   * @param {'off'|'low'|'medium'|'high'|null} [options.foveation=null] - See `foveation`.
-   * @param {number} [options.eyeSeparation=0.064] - The eyes' distance on a canvas. Headsets have their own.
+   * @param {Object} [options] - `mode`, `dominantEye`, `holes`, `samples`, `guardBand`, `nearLimit`, `foveation`, and
+   * `eyeSeparation`: the eyes' distance on a canvas, 0.064 by default. Headsets have their own.
    */
-  constructor(renderer, { mode = 'auto', dominantEye = 'right', holes = 'filled', samples, guardBand = 1, nearLimit = 0.4, foveation = null, eyeSeparation = 0.064 } = {}) {
+  constructor(renderer, { eyeSeparation = 0.064, ...options } = {}) {
     if (!renderer?.isWebGLRenderer) throw new TypeError('StereoSynthesis needs a WebGLRenderer; WebGPURenderer is not supported yet');
-    const { antialias, stencil } = renderer.getContext().getContextAttributes() ?? {};
     this.renderer = renderer;
-    /** 'synthesized'; 'rendered' for three's own two eyes; 'auto' for the cheaper of both. */
-    this.mode = mode;
-    this.dominantEye = dominantEye;
-    /** What the rendered eye does not see: 'filled' with what lies beside it, or 'rendered': opaque objects that the other eye
-     * sees are drawn once more. */
-    this.holes = holes;
-    this.samples = samples ?? (antialias ? 4 : 0);
-    this.guardBand = guardBand;
-    this.nearLimit = nearLimit;
-    /** How much fewer pixels there are where the eyes do not look: 'off', 'low', 'medium' or 'high'. Null: in a session as
-     * `renderer.xr.getFoveation()` says, on a canvas 'off'. */
-    this.foveation = foveation;
-    /** Where the eyes look, as a direction in the world; null for straight ahead. */
-    this.gaze = null;
-    /** A mask of layers: objects on them are drawn for both eyes, after the synthesis, such as hands. */
-    this.bothEyes = 0;
-    /** How the last frame was made: 'synthesized' or 'rendered'. */
-    this.way = null;
-    /** Why both eyes had to be rendered in the last frame, in a sentence, or null. */
-    this.trouble = null;
+    for (const name in options) this[name] = options[name] ?? this[name];
+    this.samples ??= this.#attributes.antialias ? 4 : 0;
     /** Its `eyeSep` is the eyes' distance on a canvas, its `aspect` that of an eye relative to the camera's. */
     this.stereoCamera = this.#halves.stereoCamera;
     this.stereoCamera.eyeSep = eyeSeparation;
-    this.#stencil = stencil;
     this.#listen('addEventListener');
     this.#begin();
   }
 
-  /** The last choice of `auto`: its way and reason and, if they could be compared, the costs of both ways in ms. */
+  /** The last choice of `auto`: its way and reason and, if they could be compared, the costs of all ways in ms. */
   get choice() {
     return this.#chooser.choice;
   }
@@ -230,6 +227,15 @@ export class StereoSynthesis {
     return Boolean(this.renderer.capabilities.reversedDepthBuffer);
   }
 
+  /** What `viewsOf` is told of the renderer. */
+  get #limits() {
+    return [this.#isReversed, this.renderer.capabilities.maxTextureSize, this.#between];
+  }
+
+  get #attributes() {
+    return this.renderer.getContext().getContextAttributes() ?? {};
+  }
+
   #listen(change) {
     const { domElement } = this.renderer;
     // Objects of a lost context are freed while it is lost.
@@ -250,7 +256,7 @@ export class StereoSynthesis {
     this.#timer = new Timer(gl);
     this.#share = new Readback(gl);
     this.#encoding = new Encoding(this.renderer);
-    this.#parts = new Parts(this, this.#encoding);
+    this.#parts = new Parts(this);
     this.#isNear = false;
     this.#chooser.sceneChanged();
   };
@@ -363,7 +369,7 @@ export class StereoSynthesis {
       return null;
     }
     const name = levelName(this.foveation, this.#isPresenting ? renderer.xr : null, this.#foveations);
-    return levelsOf(eyes.cameras, this.#rendered, name, this.gaze, this.guardBand, this.#isReversed, renderer.capabilities.maxTextureSize, this.#between) ?? [views];
+    return levelsOf(eyes.cameras, this.#rendered, name, this.gaze, this.guardBand, ...this.#limits) ?? [views];
   }
 
   /** Returns what to render with all pixels, or null; then `trouble` says why. */
@@ -371,7 +377,7 @@ export class StereoSynthesis {
     const { renderer } = this;
     const { cameras } = eyes;
     const views = troubleOf(renderer, cameras, this.#isPresenting, this.#isLinear(renderer.getRenderTarget()))
-      ?? viewsOf(cameras, this.#rendered, this.guardBand, this.#isReversed, renderer.capabilities.maxTextureSize, this.#between);
+      ?? viewsOf(cameras, this.#rendered, this.guardBand, ...this.#limits);
     this.trouble = typeof views === 'string' ? views : null;
     return this.trouble === null ? views : null;
   }
@@ -416,12 +422,10 @@ export class StereoSynthesis {
   }
 
   #target(isLinear) {
-    const target = new WebGLRenderTarget(1, 1, {
-      type: isLinear ? HalfFloatType : UnsignedByteType, minFilter: LinearFilter, magFilter: LinearFilter,
-      generateMipmaps: false, stencilBuffer: this.#stencil,
-    });
-    target.depthTexture = new DepthTexture(1, 1, this.#isReversed ? FloatType : UnsignedIntType);
-    if (this.#stencil) Object.assign(target.depthTexture, { format: DepthStencilFormat, type: UnsignedInt248Type });
+    const stencilBuffer = this.#attributes.stencil;
+    const target = new WebGLRenderTarget(1, 1, { stencilBuffer, ...(isLinear && { type: HalfFloatType }) });
+    target.depthTexture = new DepthTexture(1, 1, this.#isReversed ? FloatType : undefined);
+    if (stencilBuffer) Object.assign(target.depthTexture, { format: DepthStencilFormat, type: UnsignedInt248Type });
     if (!isLinear) encode(target, this.renderer);
     return target;
   }

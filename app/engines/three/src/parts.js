@@ -2,7 +2,6 @@
 
 import { Color, Frustum, LessEqualDepth, Matrix4, PerspectiveCamera, UVMapping, Vector4 } from 'three';
 import { asEyes, asSource } from './answers.js';
-import { drawPart } from './part.js';
 import { once } from './state.js';
 import { project } from './views.js';
 
@@ -17,21 +16,17 @@ export class Parts {
   /** True if something is seen through transmission. */
   hasGlass = false;
   #stereo;
-  #encoding;
   /** The sources' cameras: three keeps a target for transmission for each. */
   #cameras = [new PerspectiveCamera(), new PerspectiveCamera()];
-  #byLists = true;
   /** True if all opaque objects are tested by depth in the usual way. */
   #isTested = false;
   #isFoveated = false;
 
   /**
    * @param {import('./StereoSynthesis.js').StereoSynthesis} stereo
-   * @param {import('./encoding.js').Encoding} encoding
    */
-  constructor(stereo, encoding) {
+  constructor(stereo) {
     this.#stereo = stereo;
-    this.#encoding = encoding;
     for (const camera of this.#cameras) {
       camera.matrixAutoUpdate = camera.matrixWorldAutoUpdate = false;
       // Its matrix is not that of an angle.
@@ -78,15 +73,16 @@ export class Parts {
       this.isCovering = Boolean(background?.isTexture) && !background.isCubeTexture && background.mapping === UVMapping;
       this.hasGlass = false;
       this.#isFoveated = Boolean(views.hides);
-      this.#isTested = this.#listOf(scene) !== null && !overrideMaterial && renderer.sortObjects;
+      this.#isTested = !overrideMaterial && renderer.sortObjects;
     }
     const isWanted = (object, kind, item) => {
       if (isFirst && kind === 'transmissive') this.hasGlass = true;
       const isOpaque = kind === 'opaque';
-      if (isFirst && isOpaque && item) {
+      if (isFirst && isOpaque) {
         if (this.#isOfOneEyeAlone(object)) this.isCovering = true;
-        const { depthTest, depthFunc } = item.material;
-        this.#isTested &&= depthTest && depthFunc === LessEqualDepth;
+        const { depthTest, depthWrite, depthFunc } = item.material;
+        // A sky that writes no depth lies at the near plane if depth is reversed.
+        this.#isTested &&= depthTest && depthFunc === LessEqualDepth && (depthWrite || !this.#isReversed);
       }
       return !this.#isLater(object, kind) && !(isOpaque && !this.hasGlass && views.hides?.(object));
     };
@@ -98,24 +94,19 @@ export class Parts {
       renderer.setClearColor(0, 0);
     };
     const viewport = asEyes(renderer, () => renderer.getViewport(new Vector4()), eye.viewport);
-    const part = () => asSource(renderer, views, viewport, () => {
-      try {
-        return this.#part(scene, isWanted, camera, clear);
-      } finally {
-        scene.background = background;
-        renderer.setClearColor(color, alpha);
-      }
-    });
-    const left = once(renderer, () => {
-      renderer.xr.enabled = false;
-      // Shadows are those of the first source.
-      if (!isFirst) renderer.shadowMap.autoUpdate = false;
-      renderer.setRenderTarget(target);
-      // In headsets, those versions forget the background, too, and what is drawn for both eyes fits to it.
-      return before === null && target.isXRRenderTarget ? this.#encoding.draw(scene, part) : part();
-    });
-    renderer.setRenderTarget(before);
-    return left;
+    try {
+      return once(renderer, () => {
+        renderer.xr.enabled = false;
+        // Shadows are those of the first source.
+        if (!isFirst) renderer.shadowMap.autoUpdate = false;
+        renderer.setRenderTarget(target);
+        return asSource(renderer, views, viewport, () => this.#part(scene, isWanted, camera, clear));
+      });
+    } finally {
+      renderer.setRenderTarget(before);
+      renderer.setClearColor(color, alpha);
+      scene.background = background;
+    }
   }
 
   /**
@@ -149,7 +140,7 @@ export class Parts {
       const isPicture = object.parent === eyes, isOpaque = kind === 'opaque';
       if (!isPicture && !this.#isLater(object, kind)) return isOpen && isOpaque && (!object.frustumCulled || frustum.intersectsObject(object));
       // What one eye alone sees may be behind the pictures.
-      if (isCovering && item && isOpaque && !isPicture && this.#isOfOneEyeAlone(object)) item.groupOrder = item.renderOrder = -Infinity;
+      if (isCovering && isOpaque && !isPicture && this.#isOfOneEyeAlone(object)) item.groupOrder = item.renderOrder = -Infinity;
       if (isOpen) {
         // After all that holes show.
         if (isOpaque && object !== passes.own && object !== passes.open) item.groupOrder = isPicture ? Number.MAX_VALUE : Infinity;
@@ -199,16 +190,35 @@ export class Parts {
     return this.#isFoveated && !this.hasGlass && (object.isLine || object.isPoints) === true;
   }
 
-  /** Returns three's list of what it draws of a scene, which is not a public promise: without it, layers hide objects. */
-  #listOf(scene) {
-    const list = this.#byLists && this.#stereo.renderer.renderLists?.get?.(scene, 0);
-    return list?.finish ? list : null;
-  }
-
-  /** Draws a part of the scene. */
+  /**
+   * Draws a part of the scene: changes three's list of what it draws, before it is sorted. Returns how much was left out.
+   *
+   * @param {(object: import('three').Object3D, kind: string, item: Object) => boolean} isWanted - Called with
+   * 'transmissive', 'opaque' or 'transparent', in this order, and the list's item.
+   * @param {import('three').Camera} camera
+   * @param {() => void} before - Called once it is known what is drawn.
+   */
   #part(scene, isWanted, camera, before) {
-    const left = drawPart(this.#listOf(scene), scene, isWanted, () => this.#stereo.renderer.render(scene, camera), before);
-    if (left < 0) this.#byLists = false;
+    const { renderer } = this.#stereo;
+    const list = renderer.renderLists.get(scene, 0);
+    const { finish } = list;
+    let left = 0;
+    list.finish = () => {
+      for (const name of ['transmissive', 'opaque', 'transparent']) {
+        const items = list[name];
+        let kept = 0;
+        for (const item of items) if (isWanted(item.object, name, item)) items[kept++] = item;
+        left += items.length - kept;
+        items.length = kept;
+      }
+      before();
+      finish();
+    };
+    try {
+      renderer.render(scene, camera);
+    } finally {
+      list.finish = finish;
+    }
     return left;
   }
 }

@@ -74,7 +74,7 @@ uniform float mark;
 void main(){unmarked();if(mark>=0.0)gl_FragDepth=mark;}`;
 
 const writesDepth = { depthTest: true, depthWrite: true, depthFunc: AlwaysDepth, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor };
-const exact = { minFilter: NearestFilter, magFilter: NearestFilter, generateMipmaps: false };
+const exact = { minFilter: NearestFilter, magFilter: NearestFilter };
 
 /** A target of a texel for each tile. */
 const map = () => new WebGLRenderTarget(1, 1, { ...exact, format: RGBAIntegerFormat, internalFormat: 'RGBA32UI', type: UnsignedIntType, depthBuffer: false });
@@ -196,7 +196,7 @@ export class Passes {
 
   /** Draws where the prepared source, or another one, is nearer than a distance: 64 x 64 pixels of 0 or 1. */
   drawNear({ constant, slope }, distance, depth = this.#shared.depth_map.value) {
-    this.#share ??= new WebGLRenderTarget(64, 64, { depthBuffer: false, generateMipmaps: false });
+    this.#share ??= new WebGLRenderTarget(64, 64, { depthBuffer: false });
     this.#near ??= this.#triangle(screenVertex, near, {}, ['depth_map', 'law']);
     const { uniforms } = this.#near.material;
     uniforms.depth_map.value = depth;
@@ -220,7 +220,7 @@ export class Passes {
   #guessFrom(size, depth) {
     if (!this.#guessed) {
       this.#guessed = new WebGLRenderTarget(1, 1, { ...exact, format: RedFormat });
-      this.#guessed.depthTexture = new DepthTexture(1, 1, depth.type === FloatType ? FloatType : UnsignedIntType);
+      this.#guessed.depthTexture = new DepthTexture(1, 1, depth.type === FloatType ? FloatType : undefined);
       this.#guess = this.#triangle(screenVertex, guessedDepth, { ...writesDepth, colorWrite: false }, ['depth_map']);
     }
     this.#guessed.setSize(...size);

@@ -2,51 +2,44 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 export const precisions = 'precision highp float;precision highp int;precision highp sampler2D;precision highp usampler2D;';
 export const screenVertex = /* glsl */`${precisions}
-void main(){int id=gl_VertexID;vec2 K=vec2(float((id<<1)&2),float(id&2));gl_Position=vec4(K*2.0-1.0,0.0,1.0);}`;
+void main(){int a=gl_VertexID;vec2 b=vec2(float((a<<1)&2),float(a&2));gl_Position=vec4(b*2.0-1.0,0.0,1.0);}`;
 export const marchVertex = /* glsl */`${precisions}
 uniform ivec2 target_size;
 uniform ivec2 target_origin;
 uniform vec4 span_place;
 out vec2 span_at;
-void main(){int id=gl_VertexID;vec2 K=vec2(float((id<<1)&2),float(id&2));vec2 I=vec2(target_origin)+K*vec2(target_size);span_at=span_place.xy*I+span_place.zw;gl_Position=vec4(K*2.0-1.0,0.0,1.0);}`;
+void main(){int a=gl_VertexID;vec2 b=vec2(float((a<<1)&2),float(a&2));vec2 c=vec2(target_origin)+b*vec2(target_size);span_at=span_place.xy*c+span_place.zw;gl_Position=vec4(b*2.0-1.0,0.0,1.0);}`;
 export const guessedDepth = /* glsl */`${precisions}
 uniform ivec2 source_size;
 uniform vec2 law;
 uniform sampler2D depth_map;
 uniform sampler2D color_map;
-const float Dm=0.5;
-const float Dn=0.15;
-const ivec2 Cd[4]=ivec2[4](ivec2(-1,0),ivec2(1,0),ivec2(0,-1),ivec2(0,1));
-ivec2 G(ivec2 I){ivec2 J=ivec2(0);return clamp(I,J,J+source_size-1);}
-float Bm(ivec2 I){return law.y*texelFetch(depth_map,(G(I)),0).r;}
-vec3 Bz(ivec2 I){return texelFetch(color_map,(G(I)),0).rgb;}
-void main(){ivec2 I=ivec2(gl_FragCoord.xy);float Ae=Bm(I)+Dm;float Bw=Ae;ivec2 to=ivec2(0);for(int i=0;i<4;++i){float B=Bm(I+Cd[i]);to=B>Bw?Cd[i]:to;Bw=max(Bw,B);}gl_FragDepth=texelFetch(depth_map,(G(I)),0).r;if(to!=ivec2(0)){vec3 Dt=Bz(I+(Bm(I+2*to)>Ae?2:1)*to);vec3 Cn=Bz(I);vec3 Cg=Bm(I-to)>Ae?Cn:Bz(I-to);vec3 Bq=Dt-Cg;if(dot(Cn-Cg,Bq)>Dn*max(dot(Bq,Bq),1e-4)){gl_FragDepth=texelFetch(depth_map,(G(I+to)),0).r;}}}`;
+const ivec2 Y[4]=ivec2[4](ivec2(-1,0),ivec2(1,0),ivec2(0,-1),ivec2(0,1));
+ivec2 S(ivec2 a){ivec2 b=ivec2(0);return clamp(a,b,b+source_size-1);}
+float R(ivec2 a){return law.y*texelFetch(depth_map,(S(a)),0).r;}
+vec3 X(ivec2 a){return texelFetch(color_map,(S(a)),0).rgb;}
+void main(){ivec2 a=ivec2(gl_FragCoord.xy);float b=R(a)+0.5;float c=b;ivec2 d=ivec2(0);for(int e=0;e<4;++e){float f=R(a+Y[e]);d=f>c?Y[e]:d;c=max(c,f);}gl_FragDepth=texelFetch(depth_map,(S(a)),0).r;if(d!=ivec2(0)){vec3 g=X(a+(R(a+2*d)>b?2:1)*d);vec3 h=X(a);vec3 i=R(a-d)>b?h:X(a-d);vec3 j=g-i;if(dot(h-i,j)>0.15*max(dot(j,j),1e-4)){gl_FragDepth=texelFetch(depth_map,(S(a+d)),0).r;}}}`;
 export const tiles = /* glsl */`${precisions}
 uniform ivec2 source_size;
 uniform vec2 law;
 uniform bool mirrored;
 uniform float far_displacement;
 uniform vec2 columns;
-uniform ivec2 source_origin;
 uniform vec2 texel;
 const ivec2 A=ivec2(16,8);
 uniform sampler2D depth_map;
-float S(vec4 texel){return texel.r;}
-float Aa(vec2 G){return S(textureLod(depth_map,(G),0.0));}
-vec4 Br(vec2 G){ivec2 H=textureSize(depth_map,0).xy-1;ivec2 K=ivec2(floor(G*vec2(H+1)-0.5));ivec2 F=clamp(K,ivec2(0),H);ivec2 E=clamp(K+1,ivec2(0),H);return vec4(S(texelFetch(depth_map,(ivec2(F.x,E.y)),0)),S(texelFetch(depth_map,(E),0)),S(texelFetch(depth_map,(ivec2(E.x,F.y)),0)),S(texelFetch(depth_map,(F),0)));}
-float Bs(float U){return law.x+law.y*U;}
-vec2 Aq(vec2 at){at=at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
-const float Ad=16.0;
-vec4 Dq(vec2 K){vec2 H=vec2(source_size-2);vec2 at=K;float M=at.y+1.0;M=M/float(source_size.y);vec4 Y=Br(vec2(columns.x*(at.x+1.0)+columns.y,M));return Y;}
-uint Dy(float F,float E){float Bl=clamp(floor((F-far_displacement)*Ad),0.0,65534.0);float Bj=clamp(ceil((E-far_displacement)*Ad),0.0,65535.0);return uint(Bl)|(uint(Bj)<<16);}
-uint Eg(uint L){L=L>>16|L<<16;L=(L&0xff00ff00u)>>8|(L&0x00ff00ffu)<<8;L=(L&0xf0f0f0f0u)>>4|(L&0x0f0f0f0fu)<<4;L=(L&0xccccccccu)>>2|(L&0x33333333u)<<2;return(L&0xaaaaaaaau)>>1|(L&0x55555555u)<<1;}
-const float Bf=1.0/16.0;
-const float Au=9.0;
-const float Dl=0.99;
-uint Co(uint N){return mirrored?N>>16|N<<16:Eg(N);}
-uvec4 Eb(vec2 K){const vec2 Aj=vec2(A.x,A.y-1);vec2 X=K+0.5;float J=Aa(Aq(X));float Z=Aa(Aq(X+vec2(Aj.x,0.0)));float Bg=Aa(Aq(X+vec2(0.0,Aj.y)));float Dx=Aa(Aq(X+Aj));vec2 P=(vec2(Z,Bg)-J)/Aj;P=abs(law.y*(J-Z-Bg+Dx))<=4.0*Bf?P:vec2(0.0);vec4 F=vec4(1e9);vec4 E=vec4(-1e9);float Ar=0.0;uint Bv=0u;uint N=0u;float Ct=Dl/abs(law.y);float Dp=mirrored?Aj.x-1.0:0.0;float El=mirrored?-1.0:1.0;for(float M=K.y;M<K.y+float(A.y);M+=2.0){Bv=M==K.y+4.0?N:Bv;vec2 Bh=vec2(0.0);for(int i=0;i<=A.x;i+=2){float Ag=Dp+El*float(min(i,A.x-1));vec4 Y=Dq(vec2(K.x+Ag,M));vec4 C=Y-(Ar+P.x*Ag);F=min(F,C);E=max(E,C);vec2 Ch=abs(Y.xw-Bh);vec2 Be=abs(Y.yz-Y.xw);Bh=Y.yz;if(i>0&&i<A.x){N=N<<1|uint(max(Ch.x,Ch.y)>Ct);}N=N<<1|uint(max(Be.x,Be.y)>Ct);}Ar+=2.0*P.y;}vec4 Da=P.x*(mirrored?vec4(1,0,0,1):vec4(0,1,1,0))+P.y*vec4(1,1,0,0);F-=Da;E-=Da;F.xy=min(F.xy,F.zw);E.xy=max(E.xy,E.zw);float Ao=min(F.x,F.y);float Ap=max(E.x,E.y);vec2 Bn=P*Aj;float a=Bs(Ao+min(Bn.x,0.0)+min(Bn.y,0.0));float b=Bs(Ap+max(Bn.x,0.0)+max(Bn.y,0.0));vec3 Cz=vec3(Bs(0.5*(Ao+Ap)),law.y*P);bool Bc=abs(law.y)*(Ap-Ao)<=2.0*Bf&&abs(Cz.y-0.25)<0.75;uvec3 Ef=Bc?floatBitsToUint(Cz):uvec3(Co(Bv),floatBitsToUint(Au),Co(N));return uvec4(Dy(min(a,b),max(a,b)),Ef);}
+float C(vec4 a){return a.r;}
+float D(vec2 a){return C(textureLod(depth_map,(a),0.0));}
+vec4 U(vec2 a){ivec2 b=textureSize(depth_map,0).xy-1;ivec2 c=ivec2(floor(a*vec2(b+1)-0.5));ivec2 d=clamp(c,ivec2(0),b);ivec2 e=clamp(c+1,ivec2(0),b);return vec4(C(texelFetch(depth_map,(ivec2(d.x,e.y)),0)),C(texelFetch(depth_map,(e),0)),C(texelFetch(depth_map,(ivec2(e.x,d.y)),0)),C(texelFetch(depth_map,(d),0)));}
+float V(float a){return law.x+law.y*a;}
+vec2 K(vec2 a){a=a;return vec2(columns.x*a.x+columns.y,(a.y)*texel.y);}
+vec4 Ah(vec2 a){vec2 b=vec2(source_size-2);vec2 c=a;float d=c.y+1.0;d=d/float(source_size.y);vec4 e=U(vec2(columns.x*(c.x+1.0)+columns.y,d));return e;}
+uint Al(float a,float b){float c=clamp(floor((a-far_displacement)*16.0),0.0,65534.0);float d=clamp(ceil((b-far_displacement)*16.0),0.0,65535.0);return uint(c)|(uint(d)<<16);}
+uint Aq(uint a){a=a>>16|a<<16;a=(a&0xff00ff00u)>>8|(a&0x00ff00ffu)<<8;a=(a&0xf0f0f0f0u)>>4|(a&0x0f0f0f0fu)<<4;a=(a&0xccccccccu)>>2|(a&0x33333333u)<<2;return(a&0xaaaaaaaau)>>1|(a&0x55555555u)<<1;}
+uint Ab(uint a){return mirrored?a>>16|a<<16:Aq(a);}
+uvec4 Ao(vec2 a){const vec2 b=vec2(A.x,A.y-1);vec2 c=a+0.5;float d=D(K(c));float e=D(K(c+vec2(b.x,0.0)));float f=D(K(c+vec2(0.0,b.y)));float g=D(K(c+b));vec2 h=(vec2(e,f)-d)/b;h=abs(law.y*(d-e-f+g))<=4.0*(1.0/16.0)?h:vec2(0.0);vec4 i=vec4(1e9);vec4 j=vec4(-1e9);float k=0.0;uint l=0u;uint m=0u;float n=0.99/abs(law.y);float o=mirrored?b.x-1.0:0.0;float p=mirrored?-1.0:1.0;for(float q=a.y;q<a.y+float(A.y);q+=2.0){l=q==a.y+4.0?m:l;vec2 r=vec2(0.0);for(int s=0;s<=A.x;s+=2){float t=o+p*float(min(s,A.x-1));vec4 u=Ah(vec2(a.x+t,q));vec4 v=u-(k+h.x*t);i=min(i,v);j=max(j,v);vec2 w=abs(u.xw-r);vec2 z=abs(u.yz-u.xw);r=u.yz;if(s>0&&s<A.x){m=m<<1|uint(max(w.x,w.y)>n);}m=m<<1|uint(max(z.x,z.y)>n);}k+=2.0*h.y;}vec4 a0=h.x*(mirrored?vec4(1,0,0,1):vec4(0,1,1,0))+h.y*vec4(1,1,0,0);i-=a0;j-=a0;i.xy=min(i.xy,i.zw);j.xy=max(j.xy,j.zw);float b0=min(i.x,i.y);float c0=max(j.x,j.y);vec2 d0=h*b;float e0=V(b0+min(d0.x,0.0)+min(d0.y,0.0));float f0=V(c0+max(d0.x,0.0)+max(d0.y,0.0));vec3 g0=vec3(V(0.5*(b0+c0)),law.y*h);bool h0=abs(law.y)*(c0-b0)<=2.0*(1.0/16.0)&&abs(g0.y-0.25)<0.75;uvec3 i0=h0?floatBitsToUint(g0):uvec3(Ab(l),floatBitsToUint(9.0),Ab(m));return uvec4(Al(min(e0,f0),max(e0,f0)),i0);}
 layout(location=0)out uvec4 tile;
-void main(){tile=Eb((gl_FragCoord.xy-0.5)*vec2(A));}`;
+void main(){tile=Ao((gl_FragCoord.xy-0.5)*vec2(A));}`;
 export const spans = /* glsl */`${precisions}
 uniform ivec2 source_size;
 uniform ivec2 target_size;
@@ -59,18 +52,13 @@ uniform vec2 origins;
 uniform vec2 rows;
 uniform float first_row;
 const ivec2 A=ivec2(16,8);
-const float Ad=16.0;
-const uint Ak=0x3ffu;
-uint Dz(float Ed,float columns){return((floatBitsToUint(Ed)+Ak)&~Ak)|min(uint(columns),Ak);}
+uint Am(float a,float b){return((floatBitsToUint(a)+0x3ffu)&~0x3ffu)|min(uint(b),0x3ffu);}
 uniform highp usampler2D tile_map;
-const float Bf=1.0/16.0;
-const float Au=9.0;
-const int Dk=4;
-vec3 Cs(int Dc,int M){vec3 Ar=uintBitsToFloat(texelFetch(tile_map,ivec2(Dc,M),0).yzw);float J=float(Dc*A.x)+Ar.x;return vec3(J,J+float(A.y-1)*Ar.z,Ar.y);}
-bool Ee(int M){int rows=(source_size.y+A.y-1)/A.y;return(M==0&&row_offset>0)||(M==rows-1&&target_size.y-row_offset>source_size.y);}
-vec3 Ep(ivec2 tile,int Ab,int Z){if(Ab>Z||Z>=Ab+Dk||Ee(tile.y)){return vec3(0.0);}float J=float(tile.x*A.x);float H=J+float(A.x-1);vec4 Cl=vec2(J,H).xyxy;vec4 O=vec4(0.0);bool Bc=true;for(int s=Ab;s<=Z;++s){vec3 Ai=Cs(s,tile.y);Bc=Bc&&Ai.z<Au;vec4 G=float(s*A.x)+(Cl-Ai.xxyy)/(1.0+Ai.z);O=mix(O,G,s==Ab?bvec4(true):lessThanEqual(Ai.xxyy,Cl));}vec2 P=vec2(O.y-O.x,O.z-O.x)/vec2(A.x-1,A.y-1);float Bt=abs(O.w-O.y-O.z+O.x);for(int s=Ab+1;s<=Z;++s){vec2 Ai=Cs(s,tile.y).xy;vec2 Cx=abs(O.xz+P.x*(Ai-J)-float(s*A.x));bvec2 Cp=lessThan(abs(Ai-0.5*(J+H)),vec2(0.5*(H-J)));Bt=max(Bt,max(Cp.x?Cx.x:0.0,Cp.y?Cx.y:0.0));}vec4 X=vec4(0.5*float(source_size.x-1));if(!Bc||!(Bt<=Bf)||any(greaterThan(abs(O-X),X))){return vec3(0.0);}float Ag=O.x+P.x*(origins.y+law.x-J)-P.y*(first_row+0.5+float(tile.y*A.y));return vec3(columns.x*(Ag+0.5)+columns.y,columns.x*P*vec2(origins.x,1.0));}
+vec3 Ae(int a,int b){vec3 c=uintBitsToFloat(texelFetch(tile_map,ivec2(a,b),0).yzw);float d=float(a*A.x)+c.x;return vec3(d,d+float(A.y-1)*c.z,c.y);}
+bool Ap(int a){int b=(source_size.y+A.y-1)/A.y;return(a==0&&row_offset>0)||(a==b-1&&target_size.y-row_offset>source_size.y);}
+vec3 Aw(ivec2 a,int b,int c){if(b>c||c>=b+4||Ap(a.y)){return vec3(0.0);}float d=float(a.x*A.x);float e=d+float(A.x-1);vec4 f=vec2(d,e).xyxy;vec4 g=vec4(0.0);bool h=true;for(int i=b;i<=c;++i){vec3 j=Ae(i,a.y);h=h&&j.z<9.0;vec4 k=float(i*A.x)+(f-j.xxyy)/(1.0+j.z);g=mix(g,k,i==b?bvec4(true):lessThanEqual(j.xxyy,f));}vec2 l=vec2(g.y-g.x,g.z-g.x)/vec2(A.x-1,A.y-1);float m=abs(g.w-g.y-g.z+g.x);for(int i=b+1;i<=c;++i){vec2 j=Ae(i,a.y).xy;vec2 n=abs(g.xz+l.x*(j-d)-float(i*A.x));bvec2 o=lessThan(abs(j-0.5*(d+e)),vec2(0.5*(e-d)));m=max(m,max(o.x?n.x:0.0,o.y?n.y:0.0));}vec4 p=vec4(0.5*float(source_size.x-1));if(!h||!(m<=(1.0/16.0))||any(greaterThan(abs(g-p),p))){return vec3(0.0);}float q=g.x+l.x*(origins.y+law.x-d)-l.y*(first_row+0.5+float(a.y*A.y));return vec3(columns.x*(q+0.5)+columns.y,columns.x*l*vec2(origins.x,1.0));}
 layout(location=0)out uvec4 span;
-void main(){ivec2 tile=ivec2(gl_FragCoord.xy);float J=float(tile.x*A.x);float H=J+float(A.x-1);int Cc=(source_size.x+A.x-1)/A.x;int Bu=clamp(int(floor((J-near_displacement-1.0)/float(A.x)))-1,0,Cc-1);int to=clamp(int(floor((H-far_displacement+1.0)/float(A.x))),0,Cc-1);const int Cf=A.x*int(Ad);int Ao=int(floor((J-1.0-far_displacement-float((Bu+1)*A.x))*Ad));int Ap=int(ceil((H+1.0-far_displacement-float(Bu*A.x))*Ad));int F=0xffff;int E=0;int Ab=Cc;int Z=0;for(int s=Bu;s<=to;++s){uint Cv=texelFetch(tile_map,ivec2(s,tile.y),0).r;int Bl=max(int(Cv&0xffffu),Ao);int Bj=min(int(Cv>>16),Ap);if(Bl<=Bj){F=min(F,Bl);E=max(E,Bj);Ab=min(Ab,s);Z=s;}Ao-=Cf;Ap-=Cf;}if(E<F){F=E=2*tile.x*A.x<target_size.x?0xffff:0;}uint Ei=Dz(float(E)/Ad,ceil(float(E-F)/Ad)+2.0);span=uvec4(Ei,0u,0u,0u);vec3 Am=Ep(tile,Ab,Z);if(Am.y!=0.0){span.xyz=floatBitsToUint(Am);}}`;
+void main(){ivec2 a=ivec2(gl_FragCoord.xy);float b=float(a.x*A.x);float c=b+float(A.x-1);int d=(source_size.x+A.x-1)/A.x;int e=clamp(int(floor((b-near_displacement-1.0)/float(A.x)))-1,0,d-1);int f=clamp(int(floor((c-far_displacement+1.0)/float(A.x))),0,d-1);const int g=A.x*int(16.0);int h=int(floor((b-1.0-far_displacement-float((e+1)*A.x))*16.0));int i=int(ceil((c+1.0-far_displacement-float(e*A.x))*16.0));int j=0xffff;int k=0;int l=d;int m=0;for(int n=e;n<=f;++n){uint o=texelFetch(tile_map,ivec2(n,a.y),0).r;int p=max(int(o&0xffffu),h);int q=min(int(o>>16),i);if(p<=q){j=min(j,p);k=max(k,q);l=min(l,n);m=n;}h-=g;i-=g;}if(k<j){j=k=2*a.x*A.x<target_size.x?0xffff:0;}uint s=Am(float(k)/16.0,ceil(float(k-j)/16.0)+2.0);span=uvec4(s,0u,0u,0u);vec3 t=Aw(a,l,m);if(t.y!=0.0){span.xyz=floatBitsToUint(t);}}`;
 export const march = /* glsl */`${precisions}
 uniform ivec2 source_size;
 uniform vec2 law;
@@ -80,43 +68,38 @@ uniform vec2 origins;
 uniform vec2 rows;
 uniform float first_row;
 uniform float farthest;
-uniform ivec2 source_origin;
 uniform vec2 texel;
-const float At=2.0;
 const ivec2 A=ivec2(16,8);
 uniform sampler2D depth_map;
 uniform sampler2D color_map;
-float S(vec4 texel){return texel.r;}
-float Aa(vec2 G){return S(textureLod(depth_map,(G),0.0));}
-vec4 Ax(vec2 G){return textureLod(color_map,(G),0.0);}
-vec4 Br(vec2 G){ivec2 H=textureSize(depth_map,0).xy-1;ivec2 K=ivec2(floor(G*vec2(H+1)-0.5));ivec2 F=clamp(K,ivec2(0),H);ivec2 E=clamp(K+1,ivec2(0),H);return vec4(S(texelFetch(depth_map,(ivec2(F.x,E.y)),0)),S(texelFetch(depth_map,(E),0)),S(texelFetch(depth_map,(ivec2(E.x,F.y)),0)),S(texelFetch(depth_map,(F),0)));}
-vec2 Aq(vec2 at){at=at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
-float Ah(float x){return Aq(vec2(x+0.5,0.5)).x;}
-float Ac(float An){return rows.x*(gl_FragCoord.y+An)+rows.y;}
-const uint Ak=0x3ffu;
-float En(uint span){uint Dd=span&Ak;return Dd==Ak?1e9:float(Dd);}
+float C(vec4 a){return a.r;}
+float D(vec2 a){return C(textureLod(depth_map,(a),0.0));}
+vec4 M(vec2 a){return textureLod(color_map,(a),0.0);}
+vec4 U(vec2 a){ivec2 b=textureSize(depth_map,0).xy-1;ivec2 c=ivec2(floor(a*vec2(b+1)-0.5));ivec2 d=clamp(c,ivec2(0),b);ivec2 e=clamp(c+1,ivec2(0),b);return vec4(C(texelFetch(depth_map,(ivec2(d.x,e.y)),0)),C(texelFetch(depth_map,(e),0)),C(texelFetch(depth_map,(ivec2(e.x,d.y)),0)),C(texelFetch(depth_map,(d),0)));}
+vec2 K(vec2 a){a=a;return vec2(columns.x*a.x+columns.y,(a.y)*texel.y);}
+float I(float a){return K(vec2(a+0.5,0.5)).x;}
+float F(float a){return rows.x*(gl_FragCoord.y+a)+rows.y;}
+float Av(uint a){uint b=a&0x3ffu;return b==0x3ffu?1e9:float(b);}
 uniform highp usampler2D span_map;
 in vec2 span_at;
-uvec4 Ea(){return texture(span_map,span_at);}
-float Dv(uint L){float Ec=float(L&(~L+1u));return float(floatBitsToUint(Ec)>>23)-127.0;}
-const float Au=9.0;
+uvec4 An(){return texture(span_map,span_at);}
+float Aj(uint a){float b=float(a&(~a+1u));return float(floatBitsToUint(b)>>23)-127.0;}
 uniform highp usampler2D tile_map;
-struct Al{float Af;float U;bool Bk;};
-struct Bp{float x;float U;};
-vec4 Dg(Bp R,float Bi,out float Bb){vec2 G=vec2(Ah(R.x),Ac(Bi));Bb=law.y*(Aa(G)-R.U);return Ax(G);}
-vec4 Ds(Bp R,vec4 color,float An){float Eo=0.5*clamp(abs(An),1.0,12.0);vec4 Df=2.0*color;float Di=2.0;for(int i=1;i<=2;++i){float Bi=roundEven(float(i)*Eo);vec2 Bb;vec4 Aw=Dg(R,-Bi,Bb.x);vec4 Bg=Dg(R,Bi,Bb.y);vec2 Bo=vec2(lessThanEqual(Bb,vec2(1.0)));Df+=Bo.x*Aw+Bo.y*Bg;Di+=Bo.x+Bo.y;}return Df/Di;}
-struct Av{float x;vec2 C;float a;float b;};
-vec2 Ck(float x){vec4 Y=Br(vec2(columns.x*(x+1.25)+columns.y,Ac(0.25)));return mirrored?Y.zw:Y.wz;}
-Av By(float x,float T){vec2 C=Ck(x);float As=x-T;return Av(x,C,As+law.y*C.x,As+1.0+law.y*C.y);}
-bool Cq(float a,float b){return a<=0.0&&(b>0.0||max(b,-1.0)<a);}
-float Ek(float x,int Cb,bool Aw,uint As){uint Ag=uint(x);uint Be=Ag%uint(A.x);uvec4 tile=texelFetch(tile_map,ivec2(Ag/uint(A.x),Cb),0);uint N=(Aw?tile.y:tile.w)>>(As+Be);N=tile.z==floatBitsToUint(Au)?N:0u;return x+Dv(N|0x10000u>>Be);}
-bool Cr(float x,vec2 C,bool Ca){float Bh=Aa(vec2(Ah(x-1.0),Ac(0.0)));float Do=Aa(vec2(Ah(x+2.0),Ac(0.0)));float I=At-1.0;return law.y*(C.x-Bh)>=I||(Ca&&law.y*(C.y-Do)>I);}
-struct Ce{float R;float Az;float Q;float Bd;};
-bool Cu(inout Ce B,Av at){bool Ba=at.b>0.0;bool Dh=at.b-at.a>=At;bool Q=B.Q<0.0&&(!Ba||(Dh&&at.b<1.0));B.Q=Q?at.x+(Ba?1.0:0.0):B.Q;B.Bd=Q?(Ba?at.C.y:at.C.x):B.Bd;bool Cm=Ba&&law.y*(at.C.x-B.Az)<0.0;B.R=Cm?at.x:B.R;B.Az=Cm?at.C.x:B.Az;return Ba&&(at.a>-0.5||!Dh);}
-vec4 Dw(Av at,float V,float T,int M,out Al D){float Ci=at.a-at.x;bool Bx=at.x<=0.0&&Ci>0.0;V=Bx&&Ci<0.5?0.0:V;Ce B;B.R=Bx?0.0:-1.0;B.Az=Bx?at.C.x:law.y<0.0?-1e9:1e9;B.Q=-1.0;B.Bd=0.0;bool W=false;if(at.x>=0.0&&at.x<V&&Cq(at.a,at.b)){W=Cu(B,at);}float x=max(at.x+1.0,0.0);float a=at.b+(x-at.x-1.0);int Cb=M/A.y;bool Aw=(M&4)==0;uint As=uint(M&2)<<3;bool Ay=false;while(x<=V&&!W){at=By(min(Ek(x,Cb,Aw,As),V),T);Ay=a<=0.0&&at.a>0.0;W=Ay;if(!Ay&&at.x<V&&Cq(at.a,at.b)){W=Cu(B,at);}x=W?x:at.x+1.0;a=W?a:at.b;}float H=at.x;float b=at.a;while(Ay&&x<H){at=By(clamp(floor(x+(H-x)*a/(a-b)),x,H-1.0),T);Ay=at.a>0.0||at.b<=0.0;bool Ae=at.a>0.0;x=Ae?x:at.x+1.0;a=Ae?a:at.b;H=Ae?at.x:H;b=Ae?at.a:b;}bool Cy=W||B.R<0.0;x=Cy?min(at.x,V):B.R;float t=W&&at.b-at.a<At?-at.a/(at.b-at.a):0.0;D.Af=x+t;D.U=Cy?mix(at.C.x,at.C.y,t):B.Az;float An=x-T+law.y*D.U;D.Bk=!W&&abs(An)>=0.5;bool Ca=at.b-at.a<At;if(D.Bk||B.Q>=0.0||(W&&Cr(at.x,at.C,Ca))){discard;}vec4 color=Ax(vec2(Ah(D.Af),Ac(0.0)));if(D.Bk){color=Ds(Bp(x,D.U),color,An);}if(B.Q>=0.0){float Cj=1.0-abs(B.Q-T+law.y*B.Bd);color=mix(color,Ax(vec2(Ah(B.Q),Ac(0.0))),Cj);if(Cj>=0.5){D=Al(B.Q,B.Bd,false);}}return color;}
+struct J{float H;float G;bool Q;};
+struct T{float x;float G;};
+vec4 Ag(T a,float b,out float c){vec2 d=vec2(I(a.x),F(b));c=law.y*(D(d)-a.G);return M(d);}
+vec4 Ai(T a,vec4 b,float c){float d=0.5*clamp(abs(c),1.0,12.0);vec4 e=2.0*b;float f=2.0;for(int g=1;g<=2;++g){float h=roundEven(float(g)*d);vec2 i;vec4 j=Ag(a,-h,i.x);vec4 k=Ag(a,h,i.y);vec2 l=vec2(lessThanEqual(i,vec2(1.0)));e+=l.x*j+l.y*k;f+=l.x+l.y;}return e/f;}
+struct L{float x;vec2 B;float a;float b;};
+vec2 Aa(float a){vec4 b=U(vec2(columns.x*(a+1.25)+columns.y,F(0.25)));return mirrored?b.zw:b.wz;}
+L W(float a,float b){vec2 c=Aa(a);float d=a-b;return L(a,c,d+law.y*c.x,d+1.0+law.y*c.y);}
+bool Ac(float a,float b){return a<=0.0&&(b>0.0||max(b,-1.0)<a);}
+float At(float a,int b,bool c,uint d){uint e=uint(a);uint f=e%uint(A.x);uvec4 g=texelFetch(tile_map,ivec2(e/uint(A.x),b),0);uint h=(c?g.y:g.w)>>(d+f);h=g.z==floatBitsToUint(9.0)?h:0u;return a+Aj(h|0x10000u>>f);}
+bool Ad(float a,vec2 b,bool c){float d=D(vec2(I(a-1.0),F(0.0)));float e=D(vec2(I(a+2.0),F(0.0)));float f=2.0-1.0;return law.y*(b.x-d)>=f||(c&&law.y*(b.y-e)>f);}
+struct Z{float N;float O;float E;float P;};
+bool Af(inout Z c,L d){bool e=d.b>0.0;bool f=d.b-d.a>=2.0;bool g=c.E<0.0&&(!e||(f&&d.b<1.0));c.E=g?d.x+(e?1.0:0.0):c.E;c.P=g?(e?d.B.y:d.B.x):c.P;bool h=e&&law.y*(d.B.x-c.O)<0.0;c.N=h?d.x:c.N;c.O=h?d.B.x:c.O;return e&&(d.a>-0.5||!f);}
+vec4 Ak(L a,float b,float c,int d,out J e){float f=a.a-a.x;bool g=a.x<=0.0&&f>0.0;b=g&&f<0.5?0.0:b;Z h;h.N=g?0.0:-1.0;h.O=g?a.B.x:law.y<0.0?-1e9:1e9;h.E=-1.0;h.P=0.0;bool i=false;if(a.x>=0.0&&a.x<b&&Ac(a.a,a.b)){i=Af(h,a);}float j=max(a.x+1.0,0.0);float k=a.b+(j-a.x-1.0);int l=d/A.y;bool m=(d&4)==0;uint n=uint(d&2)<<3;bool o=false;while(j<=b&&!i){a=W(min(At(j,l,m,n),b),c);o=k<=0.0&&a.a>0.0;i=o;if(!o&&a.x<b&&Ac(a.a,a.b)){i=Af(h,a);}j=i?j:a.x+1.0;k=i?k:a.b;}float p=a.x;float q=a.a;while(o&&j<p){a=W(clamp(floor(j+(p-j)*k/(k-q)),j,p-1.0),c);o=a.a>0.0||a.b<=0.0;bool r=a.a>0.0;j=r?j:a.x+1.0;k=r?k:a.b;p=r?a.x:p;q=r?a.a:q;}bool s=i||h.N<0.0;j=s?min(a.x,b):h.N;float t=i&&a.b-a.a<2.0?-a.a/(a.b-a.a):0.0;e.H=j+t;e.G=s?mix(a.B.x,a.B.y,t):h.O;float u=j-c+law.y*e.G;e.Q=!i&&abs(u)>=0.5;bool v=a.b-a.a<2.0;if(e.Q||h.E>=0.0||(i&&Ad(a.x,a.B,v))){discard;}vec4 w=M(vec2(I(e.H),F(0.0)));if(e.Q){w=Ai(T(j,e.G),w,u);}if(h.E>=0.0){float x=1.0-abs(h.E-c+law.y*h.P);w=mix(w,M(vec2(I(h.E),F(0.0))),x);if(x>=0.5){e=J(h.E,h.P,false);}}return w;}
 layout(location=0)out vec4 color;
-int Em(){return int(clamp(gl_FragCoord.y-first_row,0.0,float(source_size.y-1)));}
-const float Dj=2.0;
-vec4 Eh(vec3 Am,out Al D){float G=Am.x+Am.y*gl_FragCoord.x+Am.z*gl_FragCoord.y;D.Af=clamp((G-columns.y)/columns.x-0.5,0.0,float(source_size.x-1));D.U=(origins.x*gl_FragCoord.x+origins.y-D.Af)/law.y;if(law.y==0.0){vec2 C=Ck(floor(D.Af));D.U=mix(C.x,C.y,fract(D.Af));}D.Bk=false;vec2 at=vec2(G,Ac(0.0));return Ax(at);}
-vec4 Ej(uint span,out Al D){float T=origins.x*gl_FragCoord.x+origins.y;Av at=By(floor(T-farthest-uintBitsToFloat(span)),T);float V=min(max(at.x,0.0)+En(span),float(source_size.x-1));float Du=min(at.x+Dj,V);for(;at.x<Du&&at.b<=0.0&&max(at.b,-1.0)>=at.a;at.x+=1.0){float Cw=Aa(vec2(Ah(at.x+2.0),Ac(0.0)));at.C=vec2(at.C.y,Cw);at.a=at.b;at.b=at.x+2.0-T+law.y*Cw;}float De=at.b-at.a;float t=-at.a/De;D=Al(at.x+t,mix(at.C.x,at.C.y,t),false);vec4 Db=Ax(vec2(Ah(D.Af),Ac(0.0)));float X=0.5*float(source_size.x-1);bool Dr=at.a<=0.0&&at.b>0.0&&De<At&&abs(D.Af-X)<=X;if(!Dr){Db=Dw(at,V,T,Em(),D);}else if(Cr(at.x,at.C,true)){discard;}return Db;}
-void main(){uvec4 span=Ea();Al D;if(span.y!=0u){color=Eh(uintBitsToFloat(span.xyz),D);}else{color=Ej(span.x,D);}gl_FragDepth=D.U;}`;
+int Au(){return int(clamp(gl_FragCoord.y-first_row,0.0,float(source_size.y-1)));}
+vec4 Ar(vec3 a,out J b){float c=a.x+a.y*gl_FragCoord.x+a.z*gl_FragCoord.y;b.H=clamp((c-columns.y)/columns.x-0.5,0.0,float(source_size.x-1));b.G=(origins.x*gl_FragCoord.x+origins.y-b.H)/law.y;if(law.y==0.0){vec2 d=Aa(floor(b.H));b.G=mix(d.x,d.y,fract(b.H));}b.Q=false;vec2 e=vec2(c,F(0.0));return M(e);}
+vec4 As(uint c,out J d){float e=origins.x*gl_FragCoord.x+origins.y;L f=W(floor(e-farthest-uintBitsToFloat(c)),e);float g=min(max(f.x,0.0)+Av(c),float(source_size.x-1));float h=min(f.x+2.0,g);for(;f.x<h&&f.b<=0.0&&max(f.b,-1.0)>=f.a;f.x+=1.0){float i=D(vec2(I(f.x+2.0),F(0.0)));f.B=vec2(f.B.y,i);f.a=f.b;f.b=f.x+2.0-e+law.y*i;}float j=f.b-f.a;float k=-f.a/j;d=J(f.x+k,mix(f.B.x,f.B.y,k),false);vec4 l=M(vec2(I(d.H),F(0.0)));float m=0.5*float(source_size.x-1);bool n=f.a<=0.0&&f.b>0.0&&j<2.0&&abs(d.H-m)<=m;if(!n){l=Ak(f,g,e,Au(),d);}else if(Ad(f.x,f.B,true)){discard;}return l;}
+void main(){uvec4 a=An();J b;if(a.y!=0u){color=Ar(uintBitsToFloat(a.xyz),b);}else{color=As(a.x,b);}gl_FragDepth=b.G;}`;

@@ -13,6 +13,7 @@ import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { StereoSynthesis } from 'yoro-three';
 import { build, names } from '../examples/scenes.js';
 import { Chooser } from '../src/choice.js';
+import { levelName } from '../src/levels.js';
 import { viewsOf } from '../src/views.js';
 import { psnr, ssim } from './metrics.js';
 
@@ -435,8 +436,8 @@ async function holes({ scene: name, size = 256, options = {}, attributes = { ant
   const renderer = rendererOf(2 * size, size, attributes);
   const { scene, camera } = build(name, renderer);
   tweak?.(scene, camera);
-  const { truth, calls: callsOwn } = await drawn(renderer, () => new StereoEffect(renderer).render(scene, camera));
   const stereo = new StereoSynthesis(renderer, { mode: 'synthesized', ...options });
+  const { truth, calls: callsOwn } = await truthOf(renderer, scene, camera, stereo);
   const other = stereo.dominantEye === 'left' ? 1 : 0;
   const masks = () => {
     const all = [];
@@ -452,7 +453,7 @@ async function holes({ scene: name, size = 256, options = {}, attributes = { ant
     }
     return [await halves(renderer), renderer.info.render.calls];
   };
-  const [filled, callsFilled] = await look('filled'), [rendered, calls] = await look('rendered'), [again] = await look('filled');
+  const [filled] = await look('filled'), [rendered, calls] = await look('rendered'), [again, callsFilled] = await look('filled');
   let changed = 0, wrong = 0;
   const [a, b, c] = [filled, rendered, truth].map((eyes) => eyes[other].data);
   const differs = (x, y, i, limit) => [0, 1, 2].some((k) => Math.abs(x[i + k] - y[i + k]) > limit);
@@ -496,6 +497,13 @@ async function fallbacks() {
       renderer.autoClear = true;
     };
   });
+  await look('lists', {}, ({ renderer }) => {
+    const { renderLists } = renderer;
+    renderer.renderLists = undefined;
+    return () => {
+      renderer.renderLists = renderLists;
+    };
+  });
   await look('transmission', {}, null, 'transmission', addPanorama);
   const renderer = rendererOf(128, 64, {});
   const { scene } = build('cubes', renderer);
@@ -506,6 +514,16 @@ async function fallbacks() {
   results.orthographic = [stereo.trouble, stereo.way];
   stereo.dispose();
   return results;
+}
+
+/** The level while one is chosen, and before and after, and what the headset is asked for. */
+function foveations() {
+  let value = 0.5;
+  const xr = { getFoveation: () => value, setFoveation(other) { value = other; } }, kept = {};
+  const look = (chosen) => [levelName(chosen, xr, kept), value];
+  const results = [null, 'low', 'high', null].map(look);
+  value = 1;
+  return [...results, look('off'), [levelName(null, null, kept), value], look(null)];
 }
 
 async function scenes(chosen, more) {
@@ -748,12 +766,6 @@ async function special() {
   await look('transparent canvas', { renderer: { alpha: true, antialias: true }, tweak: (scene) => {
     scene.remove(scene.children.find(({ material }) => material?.uniforms?.turbidity));
   } });
-  // Without three's list of what is to be drawn, layers hide objects.
-  const renderer = rendererOf(256, 128, {});
-  const { renderLists } = renderer;
-  renderer.renderLists = undefined;
-  await look('layers');
-  renderer.renderLists = renderLists;
   // Without encoded colour in targets of ours, it stays linear until the last pass.
   Object.defineProperty(THREE.WebGLRenderTarget.prototype, 'isXRRenderTarget', { get: () => false, set() {}, configurable: true });
   await look('linear', { frames: 8 });
@@ -761,5 +773,5 @@ async function special() {
   return results;
 }
 
-globalThis.check = { behind, holes, levels, controllers, lines, fallbacks, state, lost, near, composed, choose, quiet, special, views, compare, scenes, session, THREE, StereoSynthesis, rendererOf, build, halves, png, psnr, names };
+globalThis.check = { behind, foveations, holes, levels, controllers, lines, fallbacks, state, lost, near, composed, choose, quiet, special, views, compare, scenes, session, THREE, StereoSynthesis, rendererOf, build, halves, png, psnr, names };
 globalThis.ready = true;
