@@ -256,7 +256,7 @@ export class StereoSynthesis {
     this.#timer = new Timer(gl);
     this.#share = new Readback(gl);
     this.#encoding = new Encoding(this.renderer);
-    this.#parts = new Parts(this);
+    this.#parts = new Parts(this, this.#encoding);
     this.#isNear = false;
     this.#chooser.sceneChanged();
   };

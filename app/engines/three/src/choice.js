@@ -44,6 +44,7 @@ export class Chooser {
   #phase = SETTLES;
   /** When the phase began; null if it has not. */
   #begin = null;
+  /** 0 while nothing is measured. */
   #turn = 0;
   #turnBegin = 0;
   /** Frames of the turn, or frames that are still waited for. */
@@ -76,6 +77,7 @@ export class Chooser {
     this.#isRanked = isRanked;
     if (!ways.includes(this.#way)) this.#way = ways[1];
     this.#phase = SETTLES;
+    this.#turn = 0;
     this.#begin = this.#last = null;
     this.#choose(this.#way, 'unmeasured');
   }
@@ -87,9 +89,8 @@ export class Chooser {
 
   /** The way to make the next frame. */
   get way() {
-    const ways = this.#ways, phase = this.#phase;
-    const turns = phase === MEASURES ? this.#turn : phase === COLLECTS ? this.#turn - 1 : 0;
-    return ways[(ways.indexOf(this.#way) + turns) % ways.length];
+    const ways = this.#ways;
+    return ways[(ways.indexOf(this.#way) + this.#turn) % ways.length];
   }
 
   /**
@@ -104,7 +105,7 @@ export class Chooser {
     const interval = this.#last === null ? null : now - this.#last;
     this.#last = now;
     const tags = this.#tags, phase = this.#phase;
-    const isPause = interval !== null && !(interval >= 0 && interval < PAUSE);
+    const isPause = interval > PAUSE;
     let tag = null;
     if (!isPause && rendered === this.way) {
       if (phase === MEASURES && this.#count >= UNCOUNTED_FRAMES) tag = rendered;
@@ -115,6 +116,7 @@ export class Chooser {
     if (isPause) {
       if (phase === RESTS) return this.#watch();
       this.#phase = SETTLES;
+      this.#turn = 0;
       this.#begin = now;
       return;
     }
@@ -140,6 +142,8 @@ export class Chooser {
       this.#turnBegin = now;
       this.#count = 0;
       if (++this.#turn < TURNS || this.#turn % n > 0 || now - this.#begin < MEASURING) return;
+      // Of pictures that differ, the last one stays until one is chosen.
+      this.#turn = n > 2 ? this.#turn - 1 : 0;
       this.#phase = COLLECTS;
       this.#count = LATE_FRAMES;
       this.#collect(now);
@@ -166,14 +170,16 @@ export class Chooser {
     const took = now - this.#begin;
     this.#compare();
     const { costs, reason } = this.#choice;
-    let rest = reason === 'both hold the rate' ? LONGEST_REST : LEAST_REST;
+    // Pictures that differ are seen.
+    let rest = this.#ways.length > 2 || reason === 'both hold the rate' ? LONGEST_REST : LEAST_REST;
     if (costs) {
       const times = Object.values(costs);
       const more = (Math.max(...times) / Math.min(...times) - 1) / 2;
-      rest = Math.min(Math.max(took * more / OVERHEAD, LEAST_REST), LONGEST_REST);
+      rest = Math.min(Math.max(took * more / OVERHEAD, rest), LONGEST_REST);
     }
     this.#watch();
     this.#first = null;
+    this.#turn = 0;
     this.#phase = RESTS;
     this.#begin = now;
     this.#until = now + rest;

@@ -16,6 +16,7 @@ export class Parts {
   /** True if something is seen through transmission. */
   hasGlass = false;
   #stereo;
+  #encoding;
   /** The sources' cameras: three keeps a target for transmission for each. */
   #cameras = [new PerspectiveCamera(), new PerspectiveCamera()];
   /** True if all opaque objects are tested by depth in the usual way. */
@@ -24,9 +25,11 @@ export class Parts {
 
   /**
    * @param {import('./StereoSynthesis.js').StereoSynthesis} stereo
+   * @param {import('./encoding.js').Encoding} encoding
    */
-  constructor(stereo) {
+  constructor(stereo, encoding) {
     this.#stereo = stereo;
+    this.#encoding = encoding;
     for (const camera of this.#cameras) {
       camera.matrixAutoUpdate = camera.matrixWorldAutoUpdate = false;
       // Its matrix is not that of an angle.
@@ -100,7 +103,9 @@ export class Parts {
         // Shadows are those of the first source.
         if (!isFirst) renderer.shadowMap.autoUpdate = false;
         renderer.setRenderTarget(target);
-        return asSource(renderer, views, viewport, () => this.#part(scene, isWanted, camera, clear));
+        const part = () => asSource(renderer, views, viewport, () => this.#part(scene, isWanted, camera, clear));
+        // In headsets, those versions forget the background, too, and what is drawn for both eyes fits to it.
+        return before === null && target.isXRRenderTarget ? this.#encoding.draw(scene, part) : part();
       });
     } finally {
       renderer.setRenderTarget(before);
