@@ -218,7 +218,8 @@ fn headsets_show_what_three_would_have_shown() {
     is_good(&value, [31.0, 0.95, 8.0]);
     assert!(number(&value, "calls") < 0.65 * number(&value, "callsOwn"), "{value}");
     // Without a word, as three asks the headset: its maximum.
-    let value = session(NEWEST, quest, "{ scene: 'street', options: { samples: 4, holes: 'rendered' } }").unwrap();
+    let value =
+        session(NEWEST, quest, "{ scene: 'street', options: { samples: 4, holes: 'rendered' } }").unwrap();
     println!("{value}");
     assert_eq!(
         (&value["way"], &value["trouble"], &value["error"]),

@@ -18,7 +18,7 @@ export function troubleOf({ capabilities, xr, autoClear, renderLists, getContext
   if (isReversed && !cameras[0].reversedDepth) return 'this version of three does not tell that depth is reversed';
   if (isPresenting && xr.hasDepthSensing?.()) return 'the session hides the scene behind real things: depth sensing';
   if (!autoClear) return 'the picture is not cleared before it is drawn: renderer.autoClear is false';
-  const has = (kind) => getContext().getExtension(`EXT_color_buffer_${kind}`);
-  if (isLinear && !has('float') && !has('half_float')) return 'this GPU cannot render to half floats, which linear colour needs';
+  const has = (extension) => getContext().getExtension(extension) !== null;
+  if (isLinear && !has('EXT_color_buffer_float') && !has('EXT_color_buffer_half_float')) return 'this GPU cannot render to half floats, which linear colour needs';
   return null;
 }
