@@ -19,6 +19,8 @@ export class Parts {
   #encoding;
   /** The sources' cameras: three keeps a target for transmission for each. */
   #cameras = [new PerspectiveCamera(), new PerspectiveCamera()];
+  /** What the other eye's holes may show. */
+  #frustum = new Frustum();
   /** True if all opaque objects are tested by depth in the usual way. */
   #isTested = false;
   #isFoveated = false;
@@ -80,14 +82,14 @@ export class Parts {
     }
     const isWanted = (object, kind, item) => {
       if (isFirst && kind === 'transmissive') this.hasGlass = true;
-      const isOpaque = kind === 'opaque';
+      const isOpaque = kind === 'opaque', isLater = this.#isLater(object, kind);
       if (isFirst && isOpaque) {
         if (this.#isOfOneEyeAlone(object)) this.isCovering = true;
         const { depthTest, depthWrite, depthFunc } = item.material;
         // A sky that writes no depth lies at the near plane if depth is reversed.
-        this.#isTested &&= depthTest && depthFunc === LessEqualDepth && (depthWrite || !this.#isReversed);
+        this.#isTested &&= isLater || (depthTest && depthFunc === LessEqualDepth && (depthWrite || !this.#isReversed));
       }
-      return !this.#isLater(object, kind) && !(isOpaque && !this.hasGlass && views.hides?.(object));
+      return !isLater && !(isOpaque && !this.hasGlass && views.hides?.(object));
     };
     const color = renderer.getClearColor(new Color()), alpha = renderer.getClearAlpha();
     const clear = () => {
@@ -134,7 +136,7 @@ export class Parts {
     const isAll = left === 0 && !isCovering && !isOpen;
     if (isAll || overrideMaterial) renderer.render(eyes, shown);
     if (isAll) return;
-    const frustum = new Frustum();
+    const frustum = this.#frustum;
     if (isOpen) frustum.setFromProjectionMatrix(new Matrix4().copy(target.matrixWorld).invert().premultiply(target.projectionMatrix), undefined, this.#isReversed);
     const masks = [];
     const mask = (layers, value) => {
