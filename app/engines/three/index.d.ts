@@ -2,6 +2,11 @@ import type { ArrayCamera, Camera, DepthTexture, Object3D, PerspectiveCamera, St
 
 export type Way = 'synthesized' | 'rendered';
 
+/** Ways of `auto`: with holes filled although `holes` is `'rendered'`; with that, and without samples. */
+export type MeasuredWay = Way | 'filled' | 'aliased';
+
+export type Holes = 'filled' | 'rendered';
+
 export type Foveation = 'off' | 'low' | 'medium' | 'high';
 
 export interface StereoSynthesisOptions {
@@ -9,6 +14,8 @@ export interface StereoSynthesisOptions {
   mode?: 'auto' | Way;
   /** The eye that is rendered. Default: `'right'`. */
   dominantEye?: 'left' | 'right';
+  /** Default: `'filled'`. */
+  holes?: Holes;
   /** Samples of the rendered eye's anti-aliasing. Default: 4 if the renderer has `antialias: true`, otherwise 0. */
   samples?: number;
   /** From this distance in metres on, nothing is missing at the other eye's outer border; 0 for no band. Default: 1. */
@@ -22,19 +29,21 @@ export interface StereoSynthesisOptions {
 }
 
 export interface Choice {
-  way: Way;
+  way: MeasuredWay;
   reason: 'unmeasured' | 'cheaper' | 'similar' | 'holds the rate' | 'both hold the rate' | 'incomparable';
-  /** Milliseconds of a frame, if both ways could be compared. */
-  costs: Record<Way, number> | null;
+  /** Milliseconds of a frame of each way, if they could be compared. */
+  costs: (Record<Way, number> & Partial<Record<MeasuredWay, number>>) | null;
 }
 
 /** Renders a scene for one eye, and synthesizes the other eye from its colour and depth. */
 export class StereoSynthesis {
   constructor(renderer: WebGLRenderer, options?: StereoSynthesisOptions);
   readonly renderer: WebGLRenderer;
-  /** `'rendered'`: three's own two eyes; `'auto'`: the cheaper of both ways. */
+  /** `'rendered'`: three's own two eyes; `'auto'`: the cheapest way, or with rendered holes the best one that holds the display's rate. */
   mode: 'auto' | Way;
   dominantEye: 'left' | 'right';
+  /** What the rendered eye does not see: filled with what lies beside it, or opaque objects drawn once more. */
+  holes: Holes;
   samples: number;
   guardBand: number;
   nearLimit: number;

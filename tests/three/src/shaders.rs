@@ -7,14 +7,13 @@ use std::fmt::Write as _;
 use yoro_test_support::compiled::preprocessed;
 
 /// Each constant of the module, and the file of `yoro-shaders` that it is made from.
-const TEXTS: [(&str, &str); 7] = [
+const TEXTS: [(&str, &str); 6] = [
     ("screenVertex", "screen.vert"),
     ("marchVertex", "synthesis/march.vert"),
     ("guessedDepth", "synthesis/guessed_depth.frag"),
     ("tiles", "synthesis/gather/tiles.frag"),
     ("spans", "synthesis/gather/spans.frag"),
     ("march", "synthesis/gather/march.frag"),
-    ("nearFraction", "stereo/near_fraction.frag"),
 ];
 /// The precisions that these shaders need; three.js adds the version.
 const PRECISIONS: &str =
@@ -33,14 +32,17 @@ pub fn module() -> anyhow::Result<String> {
     );
     let mut texts = Vec::new();
     for (name, source) in TEXTS {
-        // Objects that come later are hidden by depth.
-        let text = yoro_shaders::assemble(source, "300 es", &[("WRITE_DEPTH", String::new())]).unwrap().text;
+        // Objects that come later are hidden by depth. Whoever fills holes leaves out what discards them.
+        let defines = ["WRITE_DEPTH", "OPEN_HOLES"].map(|name| (name, String::new()));
+        let text = yoro_shaders::assemble(source, "300 es", &defines).unwrap().text;
         let text = preprocessed(name, &text)?;
         let is_code =
             |line: &&str| !line.is_empty() && !line.starts_with(['#']) && !line.starts_with("precision ");
         let lines = without_parts(text.lines().map(str::trim).filter(is_code));
-        texts.push((name, used(&lines)));
+        let text = used(&lines);
+        texts.push((name, text.lines().map(with_short_locals).collect::<Vec<_>>().join("\n")));
     }
+    inline_constants(&mut texts);
     let names = short_names(texts.iter().map(|(_, text)| text.as_str()));
     for (name, text) in &texts {
         writeln!(module, "export const {name} = /* glsl */`${{precisions}}\n{}`;", renamed(text, &names))?;
@@ -48,7 +50,7 @@ pub fn module() -> anyhow::Result<String> {
     Ok(module)
 }
 
-/// Leaves out what is for sources that are parts of their textures.
+/// Leaves out what is for sources that are parts of their textures, or do not begin at their corners.
 fn without_parts<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut depth = 0;
     let whole = lines.filter(|line| {
@@ -57,10 +59,11 @@ fn without_parts<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<String> {
         !is_inside
     });
     whole
+        .map(|line| dense(line).replace("float(source_origin.y)+", ""))
         .map(|line| {
             let choice = line.split_once("PART").filter(|(_, rest)| rest.trim_start().starts_with('?'));
             let whole = choice.and_then(|(before, rest)| Some([before, rest.split_once(':')?.1].concat()));
-            whole.unwrap_or_else(|| line.to_owned())
+            whole.unwrap_or(line)
         })
         .collect()
 }
@@ -91,6 +94,61 @@ fn used(lines: &[String]) -> String {
     kept.map(|(declaration, _)| dense(declaration)).collect::<Vec<_>>().join("\n")
 }
 
+/// Writes constants of one number where they are used.
+fn inline_constants(texts: &mut [(&str, String)]) {
+    for (_, text) in texts {
+        let is_constant = |line: &&str| {
+            ["const float ", "const int ", "const uint "].iter().any(|start| line.starts_with(start))
+        };
+        let (constants, others): (Vec<_>, Vec<_>) = text.lines().partition(is_constant);
+        let values = constants.iter().map(|line| {
+            let (name, value) = line[6..]
+                .split_once(' ')
+                .and_then(|(_, rest)| rest.trim_end_matches(';').split_once('='))
+                .unwrap();
+            let value = if value.contains('/') { format!("({value})") } else { value.to_owned() };
+            (name.to_owned(), value)
+        });
+        *text = renamed(&others.join("\n"), &values.collect());
+    }
+}
+
+/// Returns the kinds and names of what a text declares.
+fn declared_in(text: &str) -> impl Iterator<Item = (&str, &str)> {
+    let phrases = text.split(|c: char| !is_word(c) && c != ' ');
+    phrases.flat_map(|phrase| words(phrase).zip(words(phrase).skip(1))).filter(|(kind, name)| {
+        let is_kind = kind.starts_with(char::is_uppercase)
+            || ["void", "struct", "bool", "int", "uint", "float"].contains(kind)
+            || kind.trim_start_matches(['i', 'u', 'b']).strip_prefix("vec").is_some_and(|n| n.len() == 1);
+        is_kind && name.starts_with(char::is_alphabetic)
+    })
+}
+
+/// Returns a declaration; in a function, parameters and variables are a, b, c, ... in their order.
+fn with_short_locals(line: &str) -> String {
+    let function = line.split_once('(').filter(|_| line.ends_with('}') && !line.starts_with("struct "));
+    let Some((head, body)) = function else { return line.to_owned() };
+    let mut locals = Vec::new();
+    for (_, name) in declared_in(body) {
+        if !locals.contains(&name) {
+            locals.push(name);
+        }
+    }
+    let others: BTreeSet<&str> = words(body).filter(|word| !locals.contains(word)).collect();
+    let letters = ('a'..='z').map(String::from).chain(('a'..='z').map(|letter| format!("{letter}0")));
+    let free = letters.filter(|letter| !others.contains(letter.as_str()));
+    let names: BTreeMap<&str, String> = locals.iter().copied().zip(free).collect();
+    let mut out = format!("{head}(");
+    for part in body.split_inclusive(|c: char| !is_word(c)) {
+        let word = part.trim_end_matches(|c: char| !is_word(c));
+        // Fields keep their names.
+        let name = names.get(word).filter(|_| !out.ends_with('.')).map_or(word, String::as_str);
+        out += name;
+        out += &part[word.len()..];
+    }
+    out
+}
+
 /// Returns a short name, with a capital letter, for each longer one that the texts declare and that no pass shares with
 /// other shaders or with three.js: the most frequent one gets the shortest.
 fn short_names<'a>(texts: impl Iterator<Item = &'a str> + Clone) -> BTreeMap<String, String> {
@@ -101,15 +159,7 @@ fn short_names<'a>(texts: impl Iterator<Item = &'a str> + Clone) -> BTreeMap<Str
         if is_shared {
             kept.extend(words(line).next_back());
         }
-        let phrases = line.split(|c: char| !is_word(c) && c != ' ');
-        for (kind, name) in phrases.flat_map(|phrase| words(phrase).zip(words(phrase).skip(1))) {
-            let is_kind = kind.starts_with(char::is_uppercase)
-                || ["void", "struct", "bool", "int", "uint", "float"].contains(&kind)
-                || kind.trim_start_matches(['i', 'u', 'b']).strip_prefix("vec").is_some_and(|n| n.len() == 1);
-            if is_kind && name.len() > 2 && name.starts_with(char::is_alphabetic) {
-                declared.insert(name, 0);
-            }
-        }
+        declared.extend(declared_in(line).filter(|(_, name)| name.len() > 2).map(|(_, name)| (name, 0)));
     }
     for word in texts.flat_map(words) {
         declared.entry(word).and_modify(|count| *count += 1);

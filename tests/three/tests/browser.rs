@@ -195,9 +195,9 @@ fn headsets_show_what_three_would_have_shown() {
         assert_eq!(result["states"], 1, "frames leave what they found: {result}");
         Some(result)
     };
-    // As Quest 3's displays are.
+    // As Quest 3's displays are, with rendered holes.
     let quest = json!({ "size": 256, "skew": 0.2425, "lift": -0.125 });
-    let what = "{ scene: 'street', options: { samples: 4, foveation: 'off' } }";
+    let what = "{ scene: 'street', options: { samples: 4, foveation: 'off', holes: 'rendered' } }";
     let Some(value) = session(NEWEST, quest.clone(), what) else { return };
     is_good(&value, [32.0, 0.96, 10.0]);
     assert_eq!(value["foveation"], 0, "three's own is set likewise");
@@ -218,7 +218,8 @@ fn headsets_show_what_three_would_have_shown() {
     is_good(&value, [31.0, 0.95, 8.0]);
     assert!(number(&value, "calls") < 0.65 * number(&value, "callsOwn"), "{value}");
     // Without a word, as three asks the headset: its maximum.
-    let value = session(NEWEST, quest, "{ scene: 'street', options: { samples: 4 } }").unwrap();
+    let value =
+        session(NEWEST, quest, "{ scene: 'street', options: { samples: 4, holes: 'rendered' } }").unwrap();
     println!("{value}");
     assert_eq!(
         (&value["way"], &value["trouble"], &value["error"]),
@@ -271,6 +272,37 @@ fn levels_are_sharp_where_the_eyes_look() {
     expect_nothing_but_reading(&mut browser);
 }
 
+/// Holes that are rendered are as in three's own second eye, and nothing else changes: transparent objects lie where they
+/// lay, mirrors show what they showed, and masks of layers come back.
+#[test]
+fn rendered_holes_are_as_in_threes_own_second_eye() {
+    let Some(mut browser) = page(NEWEST, "") else { return };
+    let mut look = |what: &str, better: f64| {
+        let value = browser.evaluate(&format!("check.holes({what})"));
+        println!("{value}");
+        assert_eq!(
+            (&value["way"], &value["trouble"], &value["error"], &value["restored"]),
+            (&json!("synthesized"), &json!(null), &json!(0), &json!(true))
+        );
+        assert_eq!((&value["own"], &value["again"]), (&json!(99), &json!(99)), "{value}");
+        assert_eq!(value["wrong"], 0, "pixels that changed and are not three's own: {value}");
+        assert!(number(&value, "rendered") >= number(&value, "filled") + better, "{value}");
+        assert!(number(&value, "changed") < 16.0, "{value}");
+        value
+    };
+    let value = look("{ scene: 'glass', options: { dominantEye: 'left' } }", 2.0);
+    assert!(number(&value, "calls") < number(&value, "callsOwn") + 10.0, "{value}");
+    look("{ scene: 'cubes' }", 8.0);
+    look("{ scene: 'mirror' }", 1.0);
+    look("{ scene: 'street', attributes: { reversedDepthBuffer: true, antialias: true } }", 1.0);
+    // In the inset alone.
+    look("{ scene: 'glass', options: { foveation: 'medium' } }", 0.2);
+    // What is seen through something cannot be drawn apart.
+    let value = look("{ scene: 'transmission' }", 0.0);
+    assert_eq!((&value["changed"], &value["calls"]), (&json!(0), &value["callsFilled"]));
+    expect_nothing_but_reading(&mut browser);
+}
+
 /// What three promises nobody has a public way beside it, in the oldest and in the newest version.
 #[test]
 fn special_renderers_and_both_versions_of_three() {
@@ -284,7 +316,7 @@ fn special_renderers_and_both_versions_of_three() {
             is_good(value, floor);
             assert!(number(value, "opacity") < 0.02, "{value}");
         }
-        assert_eq!(results.as_object().unwrap().len(), if address == NEWEST { 7 } else { 5 });
+        assert_eq!(results.as_object().unwrap().len(), if address == NEWEST { 6 } else { 4 });
         expect_nothing_but_reading(&mut browser);
     }
 }
@@ -302,9 +334,23 @@ fn frames_leave_nothing_behind_and_say_why_they_are_threes() {
     assert!(sentence("autoClear").contains("autoClear"));
     assert!(sentence("orthographic").contains("perspective"));
     assert!(sentence("transmission").contains("transmission"));
-    for name in ["logarithmic", "autoClear", "transmission"] {
+    for name in ["logarithmic", "autoClear", "lists", "transmission"] {
         assert_eq!(troubles[name], json!([sentence(name), "rendered", true]), "three's own picture");
     }
+
+    // What the user asks the headset for comes back.
+    let foveations = browser.evaluate("check.foveations()");
+    let third = 1.0 / 3.0;
+    let asked = json!([
+        ["medium", 0.5],
+        ["low", third],
+        ["high", 1],
+        ["medium", 0.5],
+        ["off", 0],
+        ["off", 0],
+        ["high", 1]
+    ]);
+    assert_eq!(foveations, asked);
 
     let state = browser.evaluate("check.state()");
     println!("{state}");
@@ -339,6 +385,25 @@ fn frames_leave_nothing_behind_and_say_why_they_are_threes() {
     for (device, reason) in [("[14, 20]", "holds the rate"), ("[5, 6]", "both hold the rate")] {
         let choice = choice(&mut browser, &format!("{{ gpu: {device}, timed: false }}"));
         assert_eq!(choice["reason"], reason, "{choice}");
+    }
+    // The best of three ways that holds the rate, otherwise the cheapest one.
+    for (gpu, way, reason) in [
+        ("[14, 12, 9]", "rendered", "holds the rate"),
+        ("[20, 13, 9]", "synthesized", "holds the rate"),
+        ("[30, 22, 18]", "filled", "cheaper"),
+    ] {
+        let device = format!(
+            "{{ gpu: {gpu}, ways: ['rendered', 'synthesized', 'filled'], isRanked: true, seconds: 900 }}"
+        );
+        let choice = choice(&mut browser, &device);
+        assert_eq!((&choice["way"], &choice["reason"]), (&json!(way), &json!(reason)), "{choice}");
+        assert!(number(&choice, "shortest") > 999.0, "nothing flickers: {choice}");
+    }
+    // Without samples only if neither two eyes nor one with samples hold the rate.
+    for (gpu, way) in [("[10, 12, 6]", "rendered"), ("[22, 20, 9]", "aliased")] {
+        let choice =
+            choice(&mut browser, &format!("{{ gpu: {gpu}, ways: ['rendered', 'synthesized', 'aliased'] }}"));
+        assert_eq!(choice["way"], way, "{choice}");
     }
     expect_nothing_but_reading(&mut browser);
 }

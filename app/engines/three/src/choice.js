@@ -1,21 +1,20 @@
-// Chooses what is cheaper on this device, in this scene: `yoro::choice` of the library, whose documentation has the
-// rules. Times are in milliseconds.
-
-/** @typedef {'synthesized'|'rendered'} Way */
+// Chooses how to render on this device, in this scene: `yoro::choice` of the library, whose documentation has the rules, for
+// any number of ways. Times are in milliseconds.
 
 /** Frames whose times may still come. */
 const REMEMBERED = 64;
-const SETTLING = 250, TURN = 125, MEASURING = 1000, WATCH = 2000;
+/** The second turn is of ways whose pictures differ, which must not flicker. */
+const SETTLING = 250, TURN = [125, 1000], MEASURING = 1000, WATCH = 2000;
 /** Longer times between frames are pauses. */
 const PAUSE = 1000;
 /** The first frames of a turn do not count: caches are cold, and earlier frames are still being displayed. */
 const UNCOUNTED_FRAMES = 3;
-const TURN_FRAMES = 7, TURNS = 6, LATE_FRAMES = 16, MAX_SAMPLES = 128;
+const TURN_FRAMES = 7, TURNS = 6, LATE_FRAMES = 16;
 /** A way holds the display's rate up to this number of refreshes between frames. */
 const MAX_REFRESHES = 1.25;
 /** Without a timer and the display's rate, ways whose frames come at times that differ by less hold the same rate. */
 const SAME_RATE = 0.05;
-/** A choice changes if the other way costs less than this share. */
+/** A choice changes if another way costs less than this share. */
 const SWITCH_BELOW = 0.9;
 /** The share of the time that measuring may cost. */
 const OVERHEAD = 0.002;
@@ -24,12 +23,11 @@ const SHORTEST_REST = 3e4, LEAST_REST = 6e4, LONGEST_REST = 6e5;
 const DRIFT = 1.3;
 
 const [SETTLES, MEASURES, COLLECTS, RESTS] = [0, 1, 2, 3];
-/** Indices of what is measured; what is watched counts for neither way. */
-const WAYS = /** @type {Way[]} */ (['rendered', 'synthesized']);
-const WATCHED = 2;
+/** What is watched counts for no way. */
+const WATCHED = 'watched';
 
 /** The mean of the middle half, or null for fewer than four times. */
-function middle(times) {
+function middle(times = []) {
   if (times.length < 4) return null;
   const sorted = times.slice().sort((a, b) => a - b);
   const quarter = sorted.length >> 2;
@@ -37,15 +35,16 @@ function middle(times) {
   return half.reduce((sum, time) => sum + time) / half.length;
 }
 
-const add = (times, ms) => {
-  if (times.length < MAX_SAMPLES) times.push(ms);
-};
-
-/** Measures both ways in turns, and chooses the cheaper one. */
+/** Measures ways in turns, and chooses the cheapest one, or the best one that holds the display's rate. */
 export class Chooser {
+  /** From the best one on. */
+  #ways = ['rendered', 'synthesized'];
+  /** True if each way is better than the next one; otherwise the first two are equally good. */
+  #isRanked = false;
   #phase = SETTLES;
   /** When the phase began; null if it has not. */
   #begin = null;
+  /** 0 while nothing is measured. */
   #turn = 0;
   #turnBegin = 0;
   /** Frames of the turn, or frames that are still waited for. */
@@ -53,44 +52,45 @@ export class Chooser {
   #until = 0;
   /** What the times of the last frames count for. */
   #tags = [];
-  #frames = 0;
   #last = null;
   #refresh = 0;
-  /** By index: both ways, and what is watched. */
-  #costs = [[], [], []];
-  #intervals = [[], [], []];
+  /** By way, and of what is watched. */
+  #costs = {};
+  #intervals = {};
   #watchBegin = null;
   #first = null;
-  #way = 1;
+  #way = 'synthesized';
   #choice = null;
 
   constructor() {
     this.sceneChanged();
   }
 
-  /** Measures again: for another scene, place or resolution. */
-  sceneChanged() {
+  /**
+   * Measures again: for another scene, place, resolution or other ways.
+   *
+   * @param {string[]} [ways] - From the best one on.
+   * @param {boolean} [isRanked] - True if the first one is better than the second one, and not only dearer.
+   */
+  sceneChanged(ways = this.#ways, isRanked = this.#isRanked) {
+    this.#ways = ways;
+    this.#isRanked = isRanked;
+    if (!ways.includes(this.#way)) this.#way = ways[1];
     this.#phase = SETTLES;
+    this.#turn = 0;
     this.#begin = this.#last = null;
     this.#choose(this.#way, 'unmeasured');
   }
 
-  /** The last choice: way, reason and, if they could be compared, the times of both ways. */
+  /** The last choice: way, reason and, if they could be compared, the times of all ways. */
   get choice() {
     return this.#choice;
   }
 
   /** The way to make the next frame. */
   get way() {
-    return WAYS[this.#next];
-  }
-
-  get isMeasuring() {
-    return this.#phase !== RESTS;
-  }
-
-  get #next() {
-    return this.#phase === MEASURES && this.#turn % 2 === 1 ? 1 - this.#way : this.#way;
+    const ways = this.#ways;
+    return ways[(ways.indexOf(this.#way) + this.#turn) % ways.length];
   }
 
   /**
@@ -98,39 +98,36 @@ export class Chooser {
    *
    * @param {number} now - The time.
    * @param {number} refresh - The display's refreshes per second, or 0 if unknown.
-   * @param {Way|null} rendered - How the frame was made, or null if it counts for no way.
+   * @param {string|null} rendered - How the frame was made, or null if it counts for no way.
    * @param {[number, number]|null} cost - How many frames ago was a frame whose GPU time has become known, and that time.
    */
   endFrame(now, refresh, rendered, cost) {
     const interval = this.#last === null ? null : now - this.#last;
     this.#last = now;
+    const tags = this.#tags, phase = this.#phase;
+    const isPause = interval > PAUSE;
     let tag = null;
-    if (interval !== null && !(interval >= 0 && interval < PAUSE)) {
-      if (this.isMeasuring) {
-        this.#phase = SETTLES;
-        this.#begin = now;
-      } else {
-        this.#watch();
-      }
-      this.#tags[this.#frames++ % REMEMBERED] = tag;
+    if (!isPause && rendered === this.way) {
+      if (phase === MEASURES && this.#count >= UNCOUNTED_FRAMES) tag = rendered;
+      else if (phase === RESTS) tag = WATCHED;
+    }
+    tags.push(tag);
+    if (tags.length > REMEMBERED) tags.shift();
+    if (isPause) {
+      if (phase === RESTS) return this.#watch();
+      this.#phase = SETTLES;
+      this.#turn = 0;
+      this.#begin = now;
       return;
     }
-    if (rendered === this.way) {
-      if (this.#phase === MEASURES && this.#count >= UNCOUNTED_FRAMES) tag = this.#next;
-      else if (this.#phase === RESTS) tag = WATCHED;
-    }
-    this.#tags[this.#frames % REMEMBERED] = tag;
     // Without a display's pace, the time between frames says nothing about the cost of those that are watched.
     if (interval !== null && tag !== null && (tag !== WATCHED || refresh > 0)) {
-      add(this.#intervals[tag], interval);
+      (this.#intervals[tag] ??= []).push(interval);
       this.#refresh = refresh;
     }
-    if (cost) {
-      const [ago, ms] = cost;
-      const of = ago < REMEMBERED && ago <= this.#frames ? this.#tags[(this.#frames - ago) % REMEMBERED] ?? null : null;
-      if (of !== null && ms > 0 && ms < Infinity) add(this.#costs[of], ms);
-    }
-    this.#frames++;
+    const [ago, ms] = cost ?? [];
+    const of = tags.at(-1 - ago);
+    if (of && ms > 0 && ms < Infinity) (this.#costs[of] ??= []).push(ms);
     this.#proceed(now);
   }
 
@@ -140,10 +137,13 @@ export class Chooser {
       this.#begin ??= now;
       if (now - this.#begin >= SETTLING) this.#measure(now);
     } else if (this.#phase === MEASURES) {
-      if (++this.#count < TURN_FRAMES || now - this.#turnBegin < TURN) return;
+      const n = this.#ways.length;
+      if (++this.#count < TURN_FRAMES || now - this.#turnBegin < TURN[Number(n > 2)]) return;
       this.#turnBegin = now;
       this.#count = 0;
-      if (++this.#turn < TURNS || this.#turn % 2 === 1 || now - this.#begin < MEASURING) return;
+      if (++this.#turn < TURNS || this.#turn % n > 0 || now - this.#begin < MEASURING) return;
+      // Of pictures that differ, the last one stays until one is chosen.
+      this.#turn = n > 2 ? this.#turn - 1 : 0;
       this.#phase = COLLECTS;
       this.#count = LATE_FRAMES;
       this.#collect(now);
@@ -155,8 +155,8 @@ export class Chooser {
   }
 
   #measure(now) {
-    this.#costs = [[], [], []];
-    this.#intervals = [[], [], []];
+    this.#costs = {};
+    this.#intervals = {};
     this.#tags = [];
     this.#phase = MEASURES;
     this.#begin = this.#turnBegin = now;
@@ -165,55 +165,57 @@ export class Chooser {
 
   /** Chooses, once the times of all frames are known or the wait for them is over. */
   #collect(now) {
-    const isMissing = (way) => this.#costs[way].length < this.#intervals[way].length;
-    if (this.#count-- > 0 && (isMissing(0) || isMissing(1))) return;
+    const isMissing = (way) => !(this.#costs[way]?.length >= this.#intervals[way]?.length);
+    if (this.#count-- > 0 && this.#ways.some(isMissing)) return;
     const took = now - this.#begin;
     this.#compare();
     const { costs, reason } = this.#choice;
-    let rest = reason === 'both hold the rate' ? LONGEST_REST : LEAST_REST;
+    // Pictures that differ are seen.
+    let rest = this.#ways.length > 2 || reason === 'both hold the rate' ? LONGEST_REST : LEAST_REST;
     if (costs) {
-      const [a, b] = [costs.rendered, costs.synthesized];
-      const more = (Math.max(a, b) / Math.min(a, b) - 1) / 2;
-      rest = Math.min(Math.max(took * more / OVERHEAD, LEAST_REST), LONGEST_REST);
+      const times = Object.values(costs);
+      const more = (Math.max(...times) / Math.min(...times) - 1) / 2;
+      rest = Math.min(Math.max(took * more / OVERHEAD, rest), LONGEST_REST);
     }
     this.#watch();
     this.#first = null;
+    this.#turn = 0;
     this.#phase = RESTS;
     this.#begin = now;
     this.#until = now + rest;
   }
 
   #compare() {
-    const ofBoth = (times) => {
-      const [a, b] = [middle(times[0]), middle(times[1])];
-      return a !== null && b !== null ? [a, b] : null;
+    const ways = this.#ways, refresh = this.#refresh;
+    const ofAll = (times) => {
+      const all = {};
+      for (const way of ways) all[way] = middle(times[way]);
+      return ways.some((way) => all[way] === null) ? null : all;
     };
-    const known = ofBoth(this.#costs), intervals = ofBoth(this.#intervals);
-    const way = this.#way;
-    if (!intervals) return this.#choose(way, 'incomparable');
-    if (this.#refresh > 0) {
-      const [first, second] = intervals.map((ms) => ms * this.#refresh <= 1000 * MAX_REFRESHES);
-      if (first !== second) return this.#choose(Number(second), 'holds the rate', intervals);
-      if (!known && first) return this.#choose(way, 'both hold the rate');
-    }
-    const [a, b] = intervals;
-    if (!known && Math.abs(a - b) < SAME_RATE * a) return this.#choose(way, 'both hold the rate');
-    const costs = known ?? intervals;
-    const [now, other] = [costs[way], costs[1 - way]];
-    const isCheaper = other < now * (this.#choice.reason === 'unmeasured' ? 1 : SWITCH_BELOW);
-    return this.#choose(isCheaper ? 1 - way : way, isCheaper || now <= other ? 'cheaper' : 'similar', costs);
+    const known = ofAll(this.#costs), intervals = ofAll(this.#intervals);
+    if (!intervals) return this.#choose(this.#way, 'incomparable');
+    const rank = (way) => Math.max(ways.indexOf(way), Number(!this.#isRanked));
+    const holding = ways.filter((way) => intervals[way] * refresh <= 1000 * MAX_REFRESHES);
+    const good = refresh > 0 ? holding.filter((way) => rank(way) === rank(holding[0])) : [];
+    if (good.length === 1) return this.#choose(good[0], 'holds the rate', intervals);
+    const open = good.length > 0 ? good : ways, costs = known ?? intervals;
+    const way = open.includes(this.#way) ? this.#way : open[0];
+    const cheapest = open.reduce((a, b) => (costs[b] < costs[a] ? b : a));
+    const [least, most] = [Math.min, Math.max].map((pick) => pick(...open.map((each) => costs[each])));
+    if (!known && (good.length > 0 || most - least < SAME_RATE * most)) return this.#choose(way, 'both hold the rate');
+    const isCheaper = least < costs[way] * (this.#choice.reason === 'unmeasured' ? 1 : SWITCH_BELOW);
+    return this.#choose(isCheaper ? cheapest : way, isCheaper || costs[way] === least ? 'cheaper' : 'similar', costs);
   }
 
   #choose(way, reason, costs = null) {
     this.#way = way;
-    this.#choice = { way: WAYS[way], reason, costs: costs && { rendered: costs[0], synthesized: costs[1] } };
+    this.#choice = { way, reason, costs };
   }
 
   /** Begins a window of frames that are watched. */
   #watch() {
     this.#watchBegin = null;
-    this.#costs[WATCHED] = [];
-    this.#intervals[WATCHED] = [];
+    for (const all of [this.#costs, this.#intervals]) all[WATCHED] = [];
   }
 
   /** True if a window ends now whose times differ from those of the first window. */

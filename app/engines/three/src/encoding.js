@@ -51,20 +51,18 @@ export class Encoding {
     for (const each of [target, right.geometry, right.material]) each.dispose();
   }
 
-  /** Draws a scene, with a background and a fog that are encoded if three forgets it. */
+  /** Draws a scene, with a background and a fog that are encoded if three forgets it. Changes the colour to clear with. */
   draw(scene, draw) {
     if (this.#background) return draw();
-    const renderer = this.#renderer;
-    const alpha = renderer.getClearAlpha();
-    const clear = renderer.getClearColor(new Color());
-    const kept = [scene.background, scene.fog?.color].filter((color) => color?.isColor).map((color) => [color, color.clone()]);
-    for (const [color] of kept) color.convertLinearToSRGB();
-    renderer.setClearColor(clear.clone().convertLinearToSRGB(), alpha);
+    const renderer = this.#renderer, clear = renderer.getClearColor(new Color());
+    const colors = [clear, scene.background, scene.fog?.color].filter((color) => color?.isColor);
+    const kept = colors.map((color) => color.clone());
+    for (const color of colors) color.convertLinearToSRGB();
+    renderer.setClearColor(clear, renderer.getClearAlpha());
     try {
       return draw();
     } finally {
-      for (const [color, before] of kept) color.copy(before);
-      renderer.setClearColor(clear, alpha);
+      colors.forEach((color, i) => color.copy(kept[i]));
     }
   }
 

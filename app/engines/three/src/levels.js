@@ -11,17 +11,19 @@ const NEAREST = 0.5;
 
 /**
  * Returns the level's name: what the user has chosen, or in a session what three asks the headset for. A choice is handed on
- * to the headset, so that whatever draws is foveated alike.
+ * to the headset, so that whatever draws is foveated alike, until there is none.
  *
  * @param {string|null} chosen
  * @param {import('three').WebXRManager|null} xr - Null outside of a session.
+ * @param {{ours?: number, users?: number}} kept - What was handed on, and what three asked for without it.
  */
-export function levelName(chosen, xr) {
-  if (chosen === null) return NAMES[Math.ceil(3 * (xr?.getFoveation() ?? 0))];
-  const i = NAMES.indexOf(chosen);
-  if (i < 0) throw new RangeError(`foveation is '${chosen}': set one of ${NAMES.join(', ')}, or null`);
-  if (xr && xr.getFoveation() !== i / 3) xr.setFoveation(i / 3);
-  return chosen;
+export function levelName(chosen, xr, kept) {
+  if (xr && xr.getFoveation() !== kept.ours) kept.users = xr.getFoveation();
+  const level = chosen === null ? (xr && kept.users) ?? 0 : NAMES.indexOf(chosen) / 3;
+  if (level < 0) throw new RangeError(`foveation is '${chosen}': set one of ${NAMES.join(', ')}, or null`);
+  if (xr && xr.getFoveation() !== level) xr.setFoveation(level);
+  if (xr) kept.ours = level;
+  return NAMES[Math.ceil(3 * level)];
 }
 
 /** Pixels of the wide level that show beside the inset's border. */

@@ -4,7 +4,7 @@ import {
   AlwaysDepth, BufferGeometry, CustomBlending, DepthTexture, FloatType, Group, GLSL3, LessEqualDepth, Mesh, NearestFilter,
   NoBlending, OneFactor, OneMinusSrcAlphaFactor, OrthographicCamera, RawShaderMaterial, RedFormat, RGBAIntegerFormat, ShaderMaterial, UnsignedIntType, WebGLRenderTarget,
 } from 'three';
-import { guessedDepth, march, marchVertex, nearFraction, precisions, screenVertex, spans, tiles } from './shaders.js';
+import { guessedDepth, march, marchVertex, precisions, screenVertex, spans, tiles } from './shaders.js';
 
 // The rendered eye, a part of the source.
 const copy = /* glsl */`${precisions}
@@ -13,6 +13,13 @@ uniform sampler2D color_map;
 uniform ivec2 crop;
 layout(location=0)out vec4 color;
 void main(){ivec2 pixel=ivec2(gl_FragCoord.xy)+crop;color=texelFetch(color_map,pixel,0);gl_FragDepth=texelFetch(depth_map,pixel,0).r;}`;
+
+// Where a depth map shows what is nearer than a distance.
+const near = /* glsl */`${precisions}
+uniform sampler2D depth_map;
+uniform vec3 law;
+layout(location=0)out vec4 is;
+void main(){is=vec4(law.x+law.y*textureLod(depth_map,gl_FragCoord.xy/64.0,0.0).r>law.z);}`;
 
 // An eye that is composed of a wide level and of an inset, which shows through where it knows better. Depth between the
 // wide level's pixels is that of a plane where it is one, so that what lies on surfaces stays visible there.
@@ -58,8 +65,16 @@ color.rgb=toneMapping(color.rgb);
 color=linearToOutputTexel(color);
 color.rgb*=share;}`;
 
+// Without holes, nothing is discarded.
+const filled = march.replaceAll('discard', '');
+
+// Pixels that are no holes are marked by depth.
+const marked = (fragmentShader) => `${fragmentShader.replace('void main()', 'void unmarked()')}
+uniform float mark;
+void main(){unmarked();if(mark>=0.0)gl_FragDepth=mark;}`;
+
 const writesDepth = { depthTest: true, depthWrite: true, depthFunc: AlwaysDepth, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor };
-const exact = { minFilter: NearestFilter, magFilter: NearestFilter, generateMipmaps: false };
+const exact = { minFilter: NearestFilter, magFilter: NearestFilter };
 
 /** A target of a texel for each tile. */
 const map = () => new WebGLRenderTarget(1, 1, { ...exact, format: RGBAIntegerFormat, internalFormat: 'RGBA32UI', type: UnsignedIntType, depthBuffer: false });
@@ -78,6 +93,7 @@ export class Passes {
   #guessed;
   #near;
   #share;
+  #isLinear;
 
   /**
    * @param {import('three').WebGLRenderer} renderer
@@ -92,15 +108,39 @@ export class Passes {
     this.#shared.span_map = { value: spanMap.texture };
     this.#tiles = this.#triangle(screenVertex, tiles);
     this.#spans = this.#triangle(screenVertex, spans);
-    this.own = this.#triangle(screenVertex, wide ? composed(copy, '') : copy, writesDepth, wide && OF_EYES, linear);
-    this.other = this.#triangle(marchVertex, wide ? composed(march, isInside) : march, writesDepth, wide && OF_EYES, linear);
+    this.#isLinear = linear;
+    this.own = this.#picture(screenVertex, copy, '');
+    this.other = this.#picture(marchVertex, filled, isInside);
     /** Both eyes' pictures, which are drawn before everything else, whether that is in a group with an order or not. */
     this.eyes = new Group();
     this.eyes.matrixWorldAutoUpdate = false;
     this.eyes.renderOrder = -Infinity;
-    // After what is put at -Infinity.
-    this.own.renderOrder = this.other.renderOrder = -Number.MAX_VALUE;
     this.eyes.add(this.own, this.other);
+  }
+
+  /**
+   * Chooses the other eye's picture.
+   *
+   * @param {boolean} isOpen - True if holes are left open, and depth is the nearest elsewhere.
+   * @param {boolean} hasDepth - True if depth is to be right once they are drawn.
+   * @param {boolean} isReversed - True if depth is 1 at the near plane, and not 0.
+   */
+  choose(isOpen, hasDepth, isReversed) {
+    if (isOpen && !this.open) {
+      for (const name of ['open', 'depth']) this.eyes.add(this[name] = this.#picture(marchVertex, march, isInside, marked));
+      this.open.material.uniforms.mark.value = Number(isReversed);
+      this.depth.material.uniforms.mark.value = -1;
+      this.depth.material.colorWrite = false;
+    }
+    this.other.visible = !isOpen;
+    if (!this.open) return;
+    this.open.visible = isOpen;
+    this.depth.visible = isOpen && hasDepth;
+  }
+
+  /** Gives each eye its picture, by three's layers of one eye. */
+  assign(rendered) {
+    for (const each of this.eyes.children) each.layers.set(each === this.own ? 1 + rendered : 2 - rendered);
   }
 
   /**
@@ -139,8 +179,10 @@ export class Passes {
     const set = ({ material }, values) => {
       for (const name in values) (material.uniforms[name] ?? {}).value = values[name];
     };
-    set(this.own, { ...eyes[rendered], wide_map: map.value, wide_depth: depth.value });
-    set(this.other, { ...eyes[1 - rendered], wide_map: other.texture, wide_depth: other.depthTexture });
+    for (const each of this.eyes.children) {
+      set(each, each === this.own ? { ...eyes[rendered], wide_map: map.value, wide_depth: depth.value }
+        : { ...eyes[1 - rendered], wide_map: other.texture, wide_depth: other.depthTexture });
+    }
   }
 
   /** Has pictures, whose alpha says how much of a pixel they cover, be drawn over what is there already, where they are nearer. */
@@ -152,16 +194,13 @@ export class Passes {
     }
   }
 
-  /** Draws how much of the prepared source, or of another one of its eye, is nearer than a depth: 16 x 16 shares. */
-  drawNear(views, nearDepth, size = views.size, depth = this.#shared.depth_map.value) {
-    this.#share ??= new WebGLRenderTarget(16, 16, { depthBuffer: false, generateMipmaps: false });
-    this.#near ??= this.#triangle(screenVertex, nearFraction, {}, ['depth_map', 'size']);
+  /** Draws where the prepared source, or another one, is nearer than a distance: 64 x 64 pixels of 0 or 1. */
+  drawNear({ constant, slope }, distance, depth = this.#shared.depth_map.value) {
+    this.#share ??= new WebGLRenderTarget(64, 64, { depthBuffer: false });
+    this.#near ??= this.#triangle(screenVertex, near, {}, ['depth_map', 'law']);
     const { uniforms } = this.#near.material;
     uniforms.depth_map.value = depth;
-    uniforms.size.value = size;
-    uniforms.origin.value = [0, 0];
-    uniforms.near_depth.value = nearDepth;
-    uniforms.reversed.value = views.slope > 0;
+    uniforms.law.value = [constant, slope, 1 / distance];
     this.#draw(this.#near, this.#share);
   }
 
@@ -181,7 +220,7 @@ export class Passes {
   #guessFrom(size, depth) {
     if (!this.#guessed) {
       this.#guessed = new WebGLRenderTarget(1, 1, { ...exact, format: RedFormat });
-      this.#guessed.depthTexture = new DepthTexture(1, 1, depth.type === FloatType ? FloatType : UnsignedIntType);
+      this.#guessed.depthTexture = new DepthTexture(1, 1, depth.type === FloatType ? FloatType : undefined);
       this.#guess = this.#triangle(screenVertex, guessedDepth, { ...writesDepth, colorWrite: false }, ['depth_map']);
     }
     this.#guessed.setSize(...size);
@@ -193,6 +232,15 @@ export class Passes {
   #draw(mesh, target) {
     this.#renderer.setRenderTarget(target);
     this.#renderer.render(mesh, this.#camera);
+  }
+
+  /** Returns an eye's picture. */
+  #picture(vertexShader, fragmentShader, test, marked = (shader) => shader) {
+    const { wide } = this;
+    const mesh = this.#triangle(vertexShader, marked(wide ? composed(fragmentShader, test) : fragmentShader), writesDepth, ['mark', ...(wide ? OF_EYES : [])], this.#isLinear);
+    // After what is put at -Infinity.
+    mesh.renderOrder = -Number.MAX_VALUE;
+    return mesh;
   }
 
   /** Returns a triangle over the viewport, without vertex buffers. It shares the uniforms that are not its own. */

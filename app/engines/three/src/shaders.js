@@ -2,51 +2,44 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 export const precisions = 'precision highp float;precision highp int;precision highp sampler2D;precision highp usampler2D;';
 export const screenVertex = /* glsl */`${precisions}
-void main(){int id=gl_VertexID;vec2 K=vec2(float((id<<1)&2),float(id&2));gl_Position=vec4(K*2.0-1.0,0.0,1.0);}`;
+void main(){int a=gl_VertexID;vec2 b=vec2(float((a<<1)&2),float(a&2));gl_Position=vec4(b*2.0-1.0,0.0,1.0);}`;
 export const marchVertex = /* glsl */`${precisions}
 uniform ivec2 target_size;
 uniform ivec2 target_origin;
 uniform vec4 span_place;
 out vec2 span_at;
-void main(){int id=gl_VertexID;vec2 K=vec2(float((id<<1)&2),float(id&2));vec2 J=vec2(target_origin)+K*vec2(target_size);span_at=span_place.xy*J+span_place.zw;gl_Position=vec4(K*2.0-1.0,0.0,1.0);}`;
+void main(){int a=gl_VertexID;vec2 b=vec2(float((a<<1)&2),float(a&2));vec2 c=vec2(target_origin)+b*vec2(target_size);span_at=span_place.xy*c+span_place.zw;gl_Position=vec4(b*2.0-1.0,0.0,1.0);}`;
 export const guessedDepth = /* glsl */`${precisions}
 uniform ivec2 source_size;
 uniform vec2 law;
 uniform sampler2D depth_map;
 uniform sampler2D color_map;
-const float Dm=0.5;
-const float Dn=0.15;
-const ivec2 Cb[4]=ivec2[4](ivec2(-1,0),ivec2(1,0),ivec2(0,-1),ivec2(0,1));
-ivec2 F(ivec2 J){ivec2 I=ivec2(0);return clamp(J,I,I+source_size-1);}
-float Bj(ivec2 J){return law.y*texelFetch(depth_map,(F(J)),0).r;}
-vec3 By(ivec2 J){return texelFetch(color_map,(F(J)),0).rgb;}
-void main(){ivec2 J=ivec2(gl_FragCoord.xy);float Ab=Bj(J)+Dm;float Bv=Ab;ivec2 to=ivec2(0);for(int i=0;i<4;++i){float B=Bj(J+Cb[i]);to=B>Bv?Cb[i]:to;Bv=max(Bv,B);}gl_FragDepth=texelFetch(depth_map,(F(J)),0).r;if(to!=ivec2(0)){vec3 Du=By(J+(Bj(J+2*to)>Ab?2:1)*to);vec3 Cn=By(J);vec3 Ce=Bj(J-to)>Ab?Cn:By(J-to);vec3 Bo=Du-Ce;if(dot(Cn-Ce,Bo)>Dn*max(dot(Bo,Bo),1e-4)){gl_FragDepth=texelFetch(depth_map,(F(J+to)),0).r;}}}`;
+const ivec2 Y[4]=ivec2[4](ivec2(-1,0),ivec2(1,0),ivec2(0,-1),ivec2(0,1));
+ivec2 S(ivec2 a){ivec2 b=ivec2(0);return clamp(a,b,b+source_size-1);}
+float R(ivec2 a){return law.y*texelFetch(depth_map,(S(a)),0).r;}
+vec3 X(ivec2 a){return texelFetch(color_map,(S(a)),0).rgb;}
+void main(){ivec2 a=ivec2(gl_FragCoord.xy);float b=R(a)+0.5;float c=b;ivec2 d=ivec2(0);for(int e=0;e<4;++e){float f=R(a+Y[e]);d=f>c?Y[e]:d;c=max(c,f);}gl_FragDepth=texelFetch(depth_map,(S(a)),0).r;if(d!=ivec2(0)){vec3 g=X(a+(R(a+2*d)>b?2:1)*d);vec3 h=X(a);vec3 i=R(a-d)>b?h:X(a-d);vec3 j=g-i;if(dot(h-i,j)>0.15*max(dot(j,j),1e-4)){gl_FragDepth=texelFetch(depth_map,(S(a+d)),0).r;}}}`;
 export const tiles = /* glsl */`${precisions}
 uniform ivec2 source_size;
 uniform vec2 law;
 uniform bool mirrored;
 uniform float far_displacement;
 uniform vec2 columns;
-uniform ivec2 source_origin;
 uniform vec2 texel;
 const ivec2 A=ivec2(16,8);
 uniform sampler2D depth_map;
-float S(vec4 texel){return texel.r;}
-float Ae(vec2 F){return S(textureLod(depth_map,(F),0.0));}
-vec4 Bp(vec2 F){ivec2 H=textureSize(depth_map,0).xy-1;ivec2 K=ivec2(floor(F*vec2(H+1)-0.5));ivec2 E=clamp(K,ivec2(0),H);ivec2 C=clamp(K+1,ivec2(0),H);return vec4(S(texelFetch(depth_map,(ivec2(E.x,C.y)),0)),S(texelFetch(depth_map,(C),0)),S(texelFetch(depth_map,(ivec2(C.x,E.y)),0)),S(texelFetch(depth_map,(E),0)));}
-float Bq(float P){return law.x+law.y*P;}
-vec2 Ap(vec2 at){at=at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
-const float Aa=16.0;
-vec4 Dr(vec2 K){vec2 H=vec2(source_size-2);vec2 at=K;float M=at.y+1.0;M=M/float(source_size.y);vec4 W=Bp(vec2(columns.x*(at.x+1.0)+columns.y,M));return W;}
-uint Dz(float E,float C){float Bi=clamp(floor((E-far_displacement)*Aa),0.0,65534.0);float Bh=clamp(ceil((C-far_displacement)*Aa),0.0,65535.0);return uint(Bi)|(uint(Bh)<<16);}
-uint Eh(uint L){L=L>>16|L<<16;L=(L&0xff00ff00u)>>8|(L&0x00ff00ffu)<<8;L=(L&0xf0f0f0f0u)>>4|(L&0x0f0f0f0fu)<<4;L=(L&0xccccccccu)>>2|(L&0x33333333u)<<2;return(L&0xaaaaaaaau)>>1|(L&0x55555555u)<<1;}
-const float Be=1.0/16.0;
-const float As=9.0;
-const float Dl=0.99;
-uint Co(uint N){return mirrored?N>>16|N<<16:Eh(N);}
-uvec4 Ec(vec2 K){const vec2 Ah=vec2(A.x,A.y-1);vec2 V=K+0.5;float I=Ae(Ap(V));float X=Ae(Ap(V+vec2(Ah.x,0.0)));float Bf=Ae(Ap(V+vec2(0.0,Ah.y)));float Dy=Ae(Ap(V+Ah));vec2 Q=(vec2(X,Bf)-I)/Ah;Q=abs(law.y*(I-X-Bf+Dy))<=4.0*Be?Q:vec2(0.0);vec4 E=vec4(1e9);vec4 C=vec4(-1e9);float Aq=0.0;uint Bu=0u;uint N=0u;float Cs=Dl/abs(law.y);float Do=mirrored?Ah.x-1.0:0.0;float Em=mirrored?-1.0:1.0;for(float M=K.y;M<K.y+float(A.y);M+=2.0){Bu=M==K.y+4.0?N:Bu;vec2 Cf=vec2(0.0);for(int i=0;i<=A.x;i+=2){float Ad=Do+Em*float(min(i,A.x-1));vec4 W=Dr(vec2(K.x+Ad,M));vec4 G=W-(Aq+Q.x*Ad);E=min(E,G);C=max(C,G);vec2 Cg=abs(W.xw-Cf);vec2 Bd=abs(W.yz-W.xw);Cf=W.yz;if(i>0&&i<A.x){N=N<<1|uint(max(Cg.x,Cg.y)>Cs);}N=N<<1|uint(max(Bd.x,Bd.y)>Cs);}Aq+=2.0*Q.y;}vec4 Cz=Q.x*(mirrored?vec4(1,0,0,1):vec4(0,1,1,0))+Q.y*vec4(1,1,0,0);E-=Cz;C-=Cz;E.xy=min(E.xy,E.zw);C.xy=max(C.xy,C.zw);float An=min(E.x,E.y);float Ao=max(C.x,C.y);vec2 Bk=Q*Ah;float a=Bq(An+min(Bk.x,0.0)+min(Bk.y,0.0));float b=Bq(Ao+max(Bk.x,0.0)+max(Bk.y,0.0));vec3 Cy=vec3(Bq(0.5*(An+Ao)),law.y*Q);bool Bb=abs(law.y)*(Ao-An)<=2.0*Be&&abs(Cy.y-0.25)<0.75;uvec3 Eg=Bb?floatBitsToUint(Cy):uvec3(Co(Bu),floatBitsToUint(As),Co(N));return uvec4(Dz(min(a,b),max(a,b)),Eg);}
+float C(vec4 a){return a.r;}
+float D(vec2 a){return C(textureLod(depth_map,(a),0.0));}
+vec4 U(vec2 a){ivec2 b=textureSize(depth_map,0).xy-1;ivec2 c=ivec2(floor(a*vec2(b+1)-0.5));ivec2 d=clamp(c,ivec2(0),b);ivec2 e=clamp(c+1,ivec2(0),b);return vec4(C(texelFetch(depth_map,(ivec2(d.x,e.y)),0)),C(texelFetch(depth_map,(e),0)),C(texelFetch(depth_map,(ivec2(e.x,d.y)),0)),C(texelFetch(depth_map,(d),0)));}
+float V(float a){return law.x+law.y*a;}
+vec2 K(vec2 a){a=a;return vec2(columns.x*a.x+columns.y,(a.y)*texel.y);}
+vec4 Ah(vec2 a){vec2 b=vec2(source_size-2);vec2 c=a;float d=c.y+1.0;d=d/float(source_size.y);vec4 e=U(vec2(columns.x*(c.x+1.0)+columns.y,d));return e;}
+uint Al(float a,float b){float c=clamp(floor((a-far_displacement)*16.0),0.0,65534.0);float d=clamp(ceil((b-far_displacement)*16.0),0.0,65535.0);return uint(c)|(uint(d)<<16);}
+uint Aq(uint a){a=a>>16|a<<16;a=(a&0xff00ff00u)>>8|(a&0x00ff00ffu)<<8;a=(a&0xf0f0f0f0u)>>4|(a&0x0f0f0f0fu)<<4;a=(a&0xccccccccu)>>2|(a&0x33333333u)<<2;return(a&0xaaaaaaaau)>>1|(a&0x55555555u)<<1;}
+uint Ab(uint a){return mirrored?a>>16|a<<16:Aq(a);}
+uvec4 Ao(vec2 a){const vec2 b=vec2(A.x,A.y-1);vec2 c=a+0.5;float d=D(K(c));float e=D(K(c+vec2(b.x,0.0)));float f=D(K(c+vec2(0.0,b.y)));float g=D(K(c+b));vec2 h=(vec2(e,f)-d)/b;h=abs(law.y*(d-e-f+g))<=4.0*(1.0/16.0)?h:vec2(0.0);vec4 i=vec4(1e9);vec4 j=vec4(-1e9);float k=0.0;uint l=0u;uint m=0u;float n=0.99/abs(law.y);float o=mirrored?b.x-1.0:0.0;float p=mirrored?-1.0:1.0;for(float q=a.y;q<a.y+float(A.y);q+=2.0){l=q==a.y+4.0?m:l;vec2 r=vec2(0.0);for(int s=0;s<=A.x;s+=2){float t=o+p*float(min(s,A.x-1));vec4 u=Ah(vec2(a.x+t,q));vec4 v=u-(k+h.x*t);i=min(i,v);j=max(j,v);vec2 w=abs(u.xw-r);vec2 z=abs(u.yz-u.xw);r=u.yz;if(s>0&&s<A.x){m=m<<1|uint(max(w.x,w.y)>n);}m=m<<1|uint(max(z.x,z.y)>n);}k+=2.0*h.y;}vec4 a0=h.x*(mirrored?vec4(1,0,0,1):vec4(0,1,1,0))+h.y*vec4(1,1,0,0);i-=a0;j-=a0;i.xy=min(i.xy,i.zw);j.xy=max(j.xy,j.zw);float b0=min(i.x,i.y);float c0=max(j.x,j.y);vec2 d0=h*b;float e0=V(b0+min(d0.x,0.0)+min(d0.y,0.0));float f0=V(c0+max(d0.x,0.0)+max(d0.y,0.0));vec3 g0=vec3(V(0.5*(b0+c0)),law.y*h);bool h0=abs(law.y)*(c0-b0)<=2.0*(1.0/16.0)&&abs(g0.y-0.25)<0.75;uvec3 i0=h0?floatBitsToUint(g0):uvec3(Ab(l),floatBitsToUint(9.0),Ab(m));return uvec4(Al(min(e0,f0),max(e0,f0)),i0);}
 layout(location=0)out uvec4 tile;
-void main(){tile=Ec((gl_FragCoord.xy-0.5)*vec2(A));}`;
+void main(){tile=Ao((gl_FragCoord.xy-0.5)*vec2(A));}`;
 export const spans = /* glsl */`${precisions}
 uniform ivec2 source_size;
 uniform ivec2 target_size;
@@ -59,18 +52,13 @@ uniform vec2 origins;
 uniform vec2 rows;
 uniform float first_row;
 const ivec2 A=ivec2(16,8);
-const float Aa=16.0;
-const uint Aj=0x3ffu;
-uint Ea(float Ee,float columns){return((floatBitsToUint(Ee)+Aj)&~Aj)|min(uint(columns),Aj);}
+uint Am(float a,float b){return((floatBitsToUint(a)+0x3ffu)&~0x3ffu)|min(uint(b),0x3ffu);}
 uniform highp usampler2D tile_map;
-const float Be=1.0/16.0;
-const float As=9.0;
-const int Dk=4;
-vec3 Cr(int Db,int M){vec3 Aq=uintBitsToFloat(texelFetch(tile_map,ivec2(Db,M),0).yzw);float I=float(Db*A.x)+Aq.x;return vec3(I,I+float(A.y-1)*Aq.z,Aq.y);}
-bool Ef(int M){int rows=(source_size.y+A.y-1)/A.y;return(M==0&&row_offset>0)||(M==rows-1&&target_size.y-row_offset>source_size.y);}
-vec3 Eq(ivec2 tile,int Z,int X){if(Z>X||X>=Z+Dk||Ef(tile.y)){return vec3(0.0);}float I=float(tile.x*A.x);float H=I+float(A.x-1);vec4 Cl=vec2(I,H).xyxy;vec4 O=vec4(0.0);bool Bb=true;for(int s=Z;s<=X;++s){vec3 Af=Cr(s,tile.y);Bb=Bb&&Af.z<As;vec4 F=float(s*A.x)+(Cl-Af.xxyy)/(1.0+Af.z);O=mix(O,F,s==Z?bvec4(true):lessThanEqual(Af.xxyy,Cl));}vec2 Q=vec2(O.y-O.x,O.z-O.x)/vec2(A.x-1,A.y-1);float Br=abs(O.w-O.y-O.z+O.x);for(int s=Z+1;s<=X;++s){vec2 Af=Cr(s,tile.y).xy;vec2 Cw=abs(O.xz+Q.x*(Af-I)-float(s*A.x));bvec2 Cp=lessThan(abs(Af-0.5*(I+H)),vec2(0.5*(H-I)));Br=max(Br,max(Cp.x?Cw.x:0.0,Cp.y?Cw.y:0.0));}vec4 V=vec4(0.5*float(source_size.x-1));if(!Bb||!(Br<=Be)||any(greaterThan(abs(O-V),V))){return vec3(0.0);}float Ad=O.x+Q.x*(origins.y+law.x-I)-Q.y*(first_row+0.5+float(tile.y*A.y));return vec3(columns.x*(Ad+0.5)+columns.y,columns.x*Q*vec2(origins.x,1.0));}
+vec3 Ae(int a,int b){vec3 c=uintBitsToFloat(texelFetch(tile_map,ivec2(a,b),0).yzw);float d=float(a*A.x)+c.x;return vec3(d,d+float(A.y-1)*c.z,c.y);}
+bool Ap(int a){int b=(source_size.y+A.y-1)/A.y;return(a==0&&row_offset>0)||(a==b-1&&target_size.y-row_offset>source_size.y);}
+vec3 Aw(ivec2 a,int b,int c){if(b>c||c>=b+4||Ap(a.y)){return vec3(0.0);}float d=float(a.x*A.x);float e=d+float(A.x-1);vec4 f=vec2(d,e).xyxy;vec4 g=vec4(0.0);bool h=true;for(int i=b;i<=c;++i){vec3 j=Ae(i,a.y);h=h&&j.z<9.0;vec4 k=float(i*A.x)+(f-j.xxyy)/(1.0+j.z);g=mix(g,k,i==b?bvec4(true):lessThanEqual(j.xxyy,f));}vec2 l=vec2(g.y-g.x,g.z-g.x)/vec2(A.x-1,A.y-1);float m=abs(g.w-g.y-g.z+g.x);for(int i=b+1;i<=c;++i){vec2 j=Ae(i,a.y).xy;vec2 n=abs(g.xz+l.x*(j-d)-float(i*A.x));bvec2 o=lessThan(abs(j-0.5*(d+e)),vec2(0.5*(e-d)));m=max(m,max(o.x?n.x:0.0,o.y?n.y:0.0));}vec4 p=vec4(0.5*float(source_size.x-1));if(!h||!(m<=(1.0/16.0))||any(greaterThan(abs(g-p),p))){return vec3(0.0);}float q=g.x+l.x*(origins.y+law.x-d)-l.y*(first_row+0.5+float(a.y*A.y));return vec3(columns.x*(q+0.5)+columns.y,columns.x*l*vec2(origins.x,1.0));}
 layout(location=0)out uvec4 span;
-void main(){ivec2 tile=ivec2(gl_FragCoord.xy);float I=float(tile.x*A.x);float H=I+float(A.x-1);int Ca=(source_size.x+A.x-1)/A.x;int Bs=clamp(int(floor((I-near_displacement-1.0)/float(A.x)))-1,0,Ca-1);int to=clamp(int(floor((H-far_displacement+1.0)/float(A.x))),0,Ca-1);const int Cd=A.x*int(Aa);int An=int(floor((I-1.0-far_displacement-float((Bs+1)*A.x))*Aa));int Ao=int(ceil((H+1.0-far_displacement-float(Bs*A.x))*Aa));int E=0xffff;int C=0;int Z=Ca;int X=0;for(int s=Bs;s<=to;++s){uint Cu=texelFetch(tile_map,ivec2(s,tile.y),0).r;int Bi=max(int(Cu&0xffffu),An);int Bh=min(int(Cu>>16),Ao);if(Bi<=Bh){E=min(E,Bi);C=max(C,Bh);Z=min(Z,s);X=s;}An-=Cd;Ao-=Cd;}if(C<E){E=C=2*tile.x*A.x<target_size.x?0xffff:0;}uint Ej=Ea(float(C)/Aa,ceil(float(C-E)/Aa)+2.0);span=uvec4(Ej,0u,0u,0u);vec3 Al=Eq(tile,Z,X);if(Al.y!=0.0){span.xyz=floatBitsToUint(Al);}}`;
+void main(){ivec2 a=ivec2(gl_FragCoord.xy);float b=float(a.x*A.x);float c=b+float(A.x-1);int d=(source_size.x+A.x-1)/A.x;int e=clamp(int(floor((b-near_displacement-1.0)/float(A.x)))-1,0,d-1);int f=clamp(int(floor((c-far_displacement+1.0)/float(A.x))),0,d-1);const int g=A.x*int(16.0);int h=int(floor((b-1.0-far_displacement-float((e+1)*A.x))*16.0));int i=int(ceil((c+1.0-far_displacement-float(e*A.x))*16.0));int j=0xffff;int k=0;int l=d;int m=0;for(int n=e;n<=f;++n){uint o=texelFetch(tile_map,ivec2(n,a.y),0).r;int p=max(int(o&0xffffu),h);int q=min(int(o>>16),i);if(p<=q){j=min(j,p);k=max(k,q);l=min(l,n);m=n;}h-=g;i-=g;}if(k<j){j=k=2*a.x*A.x<target_size.x?0xffff:0;}uint s=Am(float(k)/16.0,ceil(float(k-j)/16.0)+2.0);span=uvec4(s,0u,0u,0u);vec3 t=Aw(a,l,m);if(t.y!=0.0){span.xyz=floatBitsToUint(t);}}`;
 export const march = /* glsl */`${precisions}
 uniform ivec2 source_size;
 uniform vec2 law;
@@ -80,53 +68,38 @@ uniform vec2 origins;
 uniform vec2 rows;
 uniform float first_row;
 uniform float farthest;
-uniform ivec2 source_origin;
 uniform vec2 texel;
-const float Bn=2.0;
 const ivec2 A=ivec2(16,8);
 uniform sampler2D depth_map;
 uniform sampler2D color_map;
-float S(vec4 texel){return texel.r;}
-float Ae(vec2 F){return S(textureLod(depth_map,(F),0.0));}
-vec4 Av(vec2 F){return textureLod(color_map,(F),0.0);}
-vec4 Bp(vec2 F){ivec2 H=textureSize(depth_map,0).xy-1;ivec2 K=ivec2(floor(F*vec2(H+1)-0.5));ivec2 E=clamp(K,ivec2(0),H);ivec2 C=clamp(K+1,ivec2(0),H);return vec4(S(texelFetch(depth_map,(ivec2(E.x,C.y)),0)),S(texelFetch(depth_map,(C),0)),S(texelFetch(depth_map,(ivec2(C.x,E.y)),0)),S(texelFetch(depth_map,(E),0)));}
-vec2 Ap(vec2 at){at=at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
-float Aw(float x){return Ap(vec2(x+0.5,0.5)).x;}
-float Ag(float Am){return rows.x*(gl_FragCoord.y+Am)+rows.y;}
-const uint Aj=0x3ffu;
-float Eo(uint span){uint Dc=span&Aj;return Dc==Aj?1e9:float(Dc);}
+float C(vec4 a){return a.r;}
+float D(vec2 a){return C(textureLod(depth_map,(a),0.0));}
+vec4 M(vec2 a){return textureLod(color_map,(a),0.0);}
+vec4 U(vec2 a){ivec2 b=textureSize(depth_map,0).xy-1;ivec2 c=ivec2(floor(a*vec2(b+1)-0.5));ivec2 d=clamp(c,ivec2(0),b);ivec2 e=clamp(c+1,ivec2(0),b);return vec4(C(texelFetch(depth_map,(ivec2(d.x,e.y)),0)),C(texelFetch(depth_map,(e),0)),C(texelFetch(depth_map,(ivec2(e.x,d.y)),0)),C(texelFetch(depth_map,(d),0)));}
+vec2 K(vec2 a){a=a;return vec2(columns.x*a.x+columns.y,(a.y)*texel.y);}
+float I(float a){return K(vec2(a+0.5,0.5)).x;}
+float F(float a){return rows.x*(gl_FragCoord.y+a)+rows.y;}
+float Av(uint a){uint b=a&0x3ffu;return b==0x3ffu?1e9:float(b);}
 uniform highp usampler2D span_map;
 in vec2 span_at;
-uvec4 Eb(){return texture(span_map,span_at);}
-float Dw(uint L){float Ed=float(L&(~L+1u));return float(floatBitsToUint(Ed)>>23)-127.0;}
-const float As=9.0;
+uvec4 An(){return texture(span_map,span_at);}
+float Aj(uint a){float b=float(a&(~a+1u));return float(floatBitsToUint(b)>>23)-127.0;}
 uniform highp usampler2D tile_map;
-struct Ak{float Ac;float P;bool Bt;};
-struct Bm{float x;float P;};
-vec4 Df(Bm R,float Bg,out float Ba){vec2 F=vec2(Aw(R.x),Ag(Bg));Ba=law.y*(Ae(F)-R.P);return Av(F);}
-vec4 Dt(Bm R,vec4 color,float Am){float Ep=0.5*clamp(abs(Am),1.0,12.0);vec4 De=2.0*color;float Dh=2.0;for(int i=1;i<=2;++i){float Bg=roundEven(float(i)*Ep);vec2 Ba;vec4 Au=Df(R,-Bg,Ba.x);vec4 Bf=Df(R,Bg,Ba.y);vec2 Bl=vec2(lessThanEqual(Ba,vec2(1.0)));De+=Bl.x*Au+Bl.y*Bf;Dh+=Bl.x+Bl.y;}return De/Dh;}
-struct At{float x;vec2 G;float a;float b;};
-vec2 Ck(float x){vec4 W=Bp(vec2(columns.x*(x+1.25)+columns.y,Ag(0.25)));return mirrored?W.zw:W.wz;}
-At Bx(float x,float origin){vec2 G=Ck(x);float Ar=x-origin;return At(x,G,Ar+law.y*G.x,Ar+1.0+law.y*G.y);}
-bool Cq(float a,float b){return a<=0.0&&(b>0.0||max(b,-1.0)<a);}
-float El(float x,int Bz,bool Au,uint Ar){uint Ad=uint(x);uint Bd=Ad%uint(A.x);uvec4 tile=texelFetch(tile_map,ivec2(Ad/uint(A.x),Bz),0);uint N=(Au?tile.y:tile.w)>>(Ar+Bd);N=tile.z==floatBitsToUint(As)?N:0u;return x+Dw(N|0x10000u>>Bd);}
-struct Cc{float R;float Ay;float T;float Bc;};
-bool Ct(inout Cc B,At at){bool Az=at.b>0.0;bool Dg=at.b-at.a>=Bn;bool T=B.T<0.0&&(!Az||(Dg&&at.b<1.0));B.T=T?at.x+(Az?1.0:0.0):B.T;B.Bc=T?(Az?at.G.y:at.G.x):B.Bc;bool Cm=Az&&law.y*(at.G.x-B.Ay)<0.0;B.R=Cm?at.x:B.R;B.Ay=Cm?at.G.x:B.Ay;return Az&&(at.a>-0.5||!Dg);}
-vec4 Dx(At at,float U,float origin,int M,out Ak D){float Ch=at.a-at.x;bool Bw=at.x<=0.0&&Ch>0.0;U=Bw&&Ch<0.5?0.0:U;Cc B;B.R=Bw?0.0:-1.0;B.Ay=Bw?at.G.x:law.y<0.0?-1e9:1e9;B.T=-1.0;B.Bc=0.0;bool Y=false;if(at.x>=0.0&&at.x<U&&Cq(at.a,at.b)){Y=Ct(B,at);}float x=max(at.x+1.0,0.0);float a=at.b+(x-at.x-1.0);int Bz=M/A.y;bool Au=(M&4)==0;uint Ar=uint(M&2)<<3;bool Ax=false;while(x<=U&&!Y){at=Bx(min(El(x,Bz,Au,Ar),U),origin);Ax=a<=0.0&&at.a>0.0;Y=Ax;if(!Ax&&at.x<U&&Cq(at.a,at.b)){Y=Ct(B,at);}x=Y?x:at.x+1.0;a=Y?a:at.b;}float H=at.x;float b=at.a;while(Ax&&x<H){at=Bx(clamp(floor(x+(H-x)*a/(a-b)),x,H-1.0),origin);Ax=at.a>0.0||at.b<=0.0;bool Ab=at.a>0.0;x=Ab?x:at.x+1.0;a=Ab?a:at.b;H=Ab?at.x:H;b=Ab?at.a:b;}bool Cx=Y||B.R<0.0;x=Cx?min(at.x,U):B.R;float t=Y&&at.b-at.a<Bn?-at.a/(at.b-at.a):0.0;D.Ac=x+t;D.P=Cx?mix(at.G.x,at.G.y,t):B.Ay;float Am=x-origin+law.y*D.P;D.Bt=!Y&&abs(Am)>=0.5;vec4 color=Av(vec2(Aw(D.Ac),Ag(0.0)));if(D.Bt){color=Dt(Bm(x,D.P),color,Am);}if(B.T>=0.0){float Cj=1.0-abs(B.T-origin+law.y*B.Bc);color=mix(color,Av(vec2(Aw(B.T),Ag(0.0))),Cj);if(Cj>=0.5){D=Ak(B.T,B.Bc,false);}}return color;}
+struct J{float H;float G;bool Q;};
+struct T{float x;float G;};
+vec4 Ag(T a,float b,out float c){vec2 d=vec2(I(a.x),F(b));c=law.y*(D(d)-a.G);return M(d);}
+vec4 Ai(T a,vec4 b,float c){float d=0.5*clamp(abs(c),1.0,12.0);vec4 e=2.0*b;float f=2.0;for(int g=1;g<=2;++g){float h=roundEven(float(g)*d);vec2 i;vec4 j=Ag(a,-h,i.x);vec4 k=Ag(a,h,i.y);vec2 l=vec2(lessThanEqual(i,vec2(1.0)));e+=l.x*j+l.y*k;f+=l.x+l.y;}return e/f;}
+struct L{float x;vec2 B;float a;float b;};
+vec2 Aa(float a){vec4 b=U(vec2(columns.x*(a+1.25)+columns.y,F(0.25)));return mirrored?b.zw:b.wz;}
+L W(float a,float b){vec2 c=Aa(a);float d=a-b;return L(a,c,d+law.y*c.x,d+1.0+law.y*c.y);}
+bool Ac(float a,float b){return a<=0.0&&(b>0.0||max(b,-1.0)<a);}
+float At(float a,int b,bool c,uint d){uint e=uint(a);uint f=e%uint(A.x);uvec4 g=texelFetch(tile_map,ivec2(e/uint(A.x),b),0);uint h=(c?g.y:g.w)>>(d+f);h=g.z==floatBitsToUint(9.0)?h:0u;return a+Aj(h|0x10000u>>f);}
+bool Ad(float a,vec2 b,bool c){float d=D(vec2(I(a-1.0),F(0.0)));float e=D(vec2(I(a+2.0),F(0.0)));float f=2.0-1.0;return law.y*(b.x-d)>=f||(c&&law.y*(b.y-e)>f);}
+struct Z{float N;float O;float E;float P;};
+bool Af(inout Z c,L d){bool e=d.b>0.0;bool f=d.b-d.a>=2.0;bool g=c.E<0.0&&(!e||(f&&d.b<1.0));c.E=g?d.x+(e?1.0:0.0):c.E;c.P=g?(e?d.B.y:d.B.x):c.P;bool h=e&&law.y*(d.B.x-c.O)<0.0;c.N=h?d.x:c.N;c.O=h?d.B.x:c.O;return e&&(d.a>-0.5||!f);}
+vec4 Ak(L a,float b,float c,int d,out J e){float f=a.a-a.x;bool g=a.x<=0.0&&f>0.0;b=g&&f<0.5?0.0:b;Z h;h.N=g?0.0:-1.0;h.O=g?a.B.x:law.y<0.0?-1e9:1e9;h.E=-1.0;h.P=0.0;bool i=false;if(a.x>=0.0&&a.x<b&&Ac(a.a,a.b)){i=Af(h,a);}float j=max(a.x+1.0,0.0);float k=a.b+(j-a.x-1.0);int l=d/A.y;bool m=(d&4)==0;uint n=uint(d&2)<<3;bool o=false;while(j<=b&&!i){a=W(min(At(j,l,m,n),b),c);o=k<=0.0&&a.a>0.0;i=o;if(!o&&a.x<b&&Ac(a.a,a.b)){i=Af(h,a);}j=i?j:a.x+1.0;k=i?k:a.b;}float p=a.x;float q=a.a;while(o&&j<p){a=W(clamp(floor(j+(p-j)*k/(k-q)),j,p-1.0),c);o=a.a>0.0||a.b<=0.0;bool r=a.a>0.0;j=r?j:a.x+1.0;k=r?k:a.b;p=r?a.x:p;q=r?a.a:q;}bool s=i||h.N<0.0;j=s?min(a.x,b):h.N;float t=i&&a.b-a.a<2.0?-a.a/(a.b-a.a):0.0;e.H=j+t;e.G=s?mix(a.B.x,a.B.y,t):h.O;float u=j-c+law.y*e.G;e.Q=!i&&abs(u)>=0.5;bool v=a.b-a.a<2.0;if(e.Q||h.E>=0.0||(i&&Ad(a.x,a.B,v))){discard;}vec4 w=M(vec2(I(e.H),F(0.0)));if(e.Q){w=Ai(T(j,e.G),w,u);}if(h.E>=0.0){float x=1.0-abs(h.E-c+law.y*h.P);w=mix(w,M(vec2(I(h.E),F(0.0))),x);if(x>=0.5){e=J(h.E,h.P,false);}}return w;}
 layout(location=0)out vec4 color;
-int En(){return int(clamp(gl_FragCoord.y-first_row,0.0,float(source_size.y-1)));}
-const float Di=2.0;
-vec4 Ei(vec3 Al,out Ak D){float F=Al.x+Al.y*gl_FragCoord.x+Al.z*gl_FragCoord.y;D.Ac=clamp((F-columns.y)/columns.x-0.5,0.0,float(source_size.x-1));D.P=(origins.x*gl_FragCoord.x+origins.y-D.Ac)/law.y;if(law.y==0.0){vec2 G=Ck(floor(D.Ac));D.P=mix(G.x,G.y,fract(D.Ac));}D.Bt=false;vec2 at=vec2(F,Ag(0.0));return Av(at);}
-vec4 Ek(uint span,out Ak D){float origin=origins.x*gl_FragCoord.x+origins.y;At at=Bx(floor(origin-farthest-uintBitsToFloat(span)),origin);float U=min(max(at.x,0.0)+Eo(span),float(source_size.x-1));float Dv=min(at.x+Di,U);for(;at.x<Dv&&at.b<=0.0&&max(at.b,-1.0)>=at.a;at.x+=1.0){float Cv=Ae(vec2(Aw(at.x+2.0),Ag(0.0)));at.G=vec2(at.G.y,Cv);at.a=at.b;at.b=at.x+2.0-origin+law.y*Cv;}float Dd=at.b-at.a;float t=-at.a/Dd;D=Ak(at.x+t,mix(at.G.x,at.G.y,t),false);vec4 Da=Av(vec2(Aw(D.Ac),Ag(0.0)));float V=0.5*float(source_size.x-1);bool Ds=at.a<=0.0&&at.b>0.0&&Dd<Bn&&abs(D.Ac-V)<=V;if(!Ds){Da=Dx(at,U,origin,En(),D);}return Da;}
-void main(){uvec4 span=Eb();Ak D;if(span.y!=0u){color=Ei(uintBitsToFloat(span.xyz),D);}else{color=Ek(span.x,D);}gl_FragDepth=D.P;}`;
-export const nearFraction = /* glsl */`${precisions}
-uniform highp sampler2D depth_map;
-float Dq(ivec2 p){return texelFetch(depth_map,p,0).x;}
-uniform ivec2 origin;
-uniform ivec2 size;
-uniform float near_depth;
-uniform bool reversed;
-layout(location=0)out vec4 fraction;
-const int Dj=16;
-const int Ai=8;
-void main(){ivec2 Dp=ivec2(gl_FragCoord.xy)*Ai;float Ci=0.0;for(int j=0;j<Ai;++j){for(int i=0;i<Ai;++i){ivec2 J=origin+((Dp+ivec2(i,j))*2+1)*size/(2*Dj*Ai);float P=Dq(J);Ci+=(reversed?P>near_depth:P<near_depth)?1.0:0.0;}}fraction=vec4(Ci/float(Ai*Ai));}`;
+int Au(){return int(clamp(gl_FragCoord.y-first_row,0.0,float(source_size.y-1)));}
+vec4 Ar(vec3 a,out J b){float c=a.x+a.y*gl_FragCoord.x+a.z*gl_FragCoord.y;b.H=clamp((c-columns.y)/columns.x-0.5,0.0,float(source_size.x-1));b.G=(origins.x*gl_FragCoord.x+origins.y-b.H)/law.y;if(law.y==0.0){vec2 d=Aa(floor(b.H));b.G=mix(d.x,d.y,fract(b.H));}b.Q=false;vec2 e=vec2(c,F(0.0));return M(e);}
+vec4 As(uint c,out J d){float e=origins.x*gl_FragCoord.x+origins.y;L f=W(floor(e-farthest-uintBitsToFloat(c)),e);float g=min(max(f.x,0.0)+Av(c),float(source_size.x-1));float h=min(f.x+2.0,g);for(;f.x<h&&f.b<=0.0&&max(f.b,-1.0)>=f.a;f.x+=1.0){float i=D(vec2(I(f.x+2.0),F(0.0)));f.B=vec2(f.B.y,i);f.a=f.b;f.b=f.x+2.0-e+law.y*i;}float j=f.b-f.a;float k=-f.a/j;d=J(f.x+k,mix(f.B.x,f.B.y,k),false);vec4 l=M(vec2(I(d.H),F(0.0)));float m=0.5*float(source_size.x-1);bool n=f.a<=0.0&&f.b>0.0&&j<2.0&&abs(d.H-m)<=m;if(!n){l=Ak(f,g,e,Au(),d);}else if(Ad(f.x,f.B,true)){discard;}return l;}
+void main(){uvec4 a=An();J b;if(a.y!=0u){color=Ar(uintBitsToFloat(a.xyz),b);}else{color=As(a.x,b);}gl_FragDepth=b.G;}`;

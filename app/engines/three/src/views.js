@@ -42,14 +42,14 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
   if (e[11] !== -1 || e[15] !== 0 || e[1] !== 0 || e[4] !== 0) return 'the camera has no perspective';
   const { x, y, z: width, w: height } = target.viewport;
   const own = source.viewport;
-  if (!(width > 0 && height > 0 && own.z === width && own.w === height)) return 'the eyes’ images differ in size';
+  if (!(width > 0 && height > 0 && own.z === width && own.w === height)) return 'the images of the eyes differ in size';
 
   const [[sLeft, sRight], [sDown, sUp]] = tangents(source.projectionMatrix), [[tLeft, tRight], [tDown, tUp]] = tangents(target.projectionMatrix);
   const dx = (sRight - sLeft) / width, dy = (sUp - sDown) / height;
   const row = (sDown - tDown) / dy;
   const fits = Math.abs((tRight - tLeft) / dx - width) <= 0.05 && Math.abs((tUp - tDown) / dy - height) <= 0.05
     && Math.abs(row - Math.round(row)) <= 0.05;
-  if (!fits) return 'the eyes’ fields of view differ in size, or by a part of a pixel’s row';
+  if (!fits) return 'the fields of view of the eyes differ in size, or by a part of a row of pixels';
 
   // The source: the rendered eye, grown by whole pixels to the union of both frusta and by the guard band, which lies
   // on the side that the other eye sees more of.
@@ -58,7 +58,7 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
   const right = roundedUp((tRight - sRight) / dx) + (toLeft ? 0 : guard);
   const below = roundedUp((sDown - tDown) / dy), above = roundedUp((tUp - sUp) / dy);
   const size = [width + left + right, height + below + above];
-  if (Math.max(...size) > largest) return `the rendered eye would be larger than this GPU’s largest image (${largest} pixels)`;
+  if (Math.max(...size) > largest) return `the rendered eye would be larger than the largest image of this GPU (${largest} pixels)`;
   const frustum = [[sLeft - left * dx, sRight + right * dx], [sDown - below * dy, sUp + above * dy]];
 
   // 1 / distance = constant + slope * depth, read from the projection: three's near and far may be a frame ahead of it.
@@ -72,7 +72,7 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
   if (!toLeft) [offset, scale] = [width - size[0] - offset, -scale];
   const atNear = offset + Math.max(scale, 0), atFar = offset + Math.min(scale, 0);
   if (!(Math.min(atNear - atFar, width - atFar) <= MAX_MOVEMENT)) {
-    return 'the nearest surfaces move too far between the eyes: increase the camera’s near';
+    return 'the nearest surfaces move too far between the eyes: increase near of the camera';
   }
 
   const maps = [[size[0], size[1]], [width, size[1]]].map((of) => of.map((n, i) => Math.ceil(n / TILE[i])));
@@ -82,7 +82,7 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
   const firstRow = y + rowOffset;
   const [across, up] = maps[1].map((n, i) => n * TILE[i]);
   return {
-    size, maps, frustum, constant, slope, whole: [width, height],
+    size, maps, frustum, constant, slope, target, whole: [width, height],
     uniforms: {
       source_size: size,
       target_size: [width, height],
@@ -98,7 +98,6 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, betwee
       rows: [1 / size[1], -firstRow / size[1]],
       first_row: firstRow,
       farthest: atFar - offset + 0.01,
-      source_origin: [0, 0],
       texel: [1 / size[0], 1 / size[1]],
       crop: [left - own.x, below - own.y],
     },

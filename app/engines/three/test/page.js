@@ -13,6 +13,7 @@ import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { StereoSynthesis } from 'yoro-three';
 import { build, names } from '../examples/scenes.js';
 import { Chooser } from '../src/choice.js';
+import { levelName } from '../src/levels.js';
 import { viewsOf } from '../src/views.js';
 import { psnr, ssim } from './metrics.js';
 
@@ -429,6 +430,49 @@ async function levels({ scene: name, foveation = 'medium', size = 256, gazes = [
   return results;
 }
 
+/** Holes that are filled beside those that are rendered: what the pictures are like, in dB; the share of pixels that differ in
+ * percent, and the share of these that are not as in three's own second eye; whether the rendered eye is the same; draw calls. */
+async function holes({ scene: name, size = 256, options = {}, attributes = { antialias: true }, tweak, frames = 1, picture = false }) {
+  const renderer = rendererOf(2 * size, size, attributes);
+  const { scene, camera } = build(name, renderer);
+  tweak?.(scene, camera);
+  const stereo = new StereoSynthesis(renderer, { mode: 'synthesized', ...options });
+  const { truth, calls: callsOwn } = await truthOf(renderer, scene, camera, stereo);
+  const other = stereo.dominantEye === 'left' ? 1 : 0;
+  const masks = () => {
+    const all = [];
+    scene.traverse(({ layers }) => all.push(layers.mask));
+    return all.join();
+  };
+  const before = masks();
+  const look = async (holes) => {
+    stereo.holes = holes;
+    for (let i = 0; i < frames; i++) {
+      stereo.render(scene, camera);
+      await nextTask();
+    }
+    return [await halves(renderer), renderer.info.render.calls];
+  };
+  const [filled] = await look('filled'), [rendered, calls] = await look('rendered'), [again, callsFilled] = await look('filled');
+  let changed = 0, wrong = 0;
+  const [a, b, c] = [filled, rendered, truth].map((eyes) => eyes[other].data);
+  const differs = (x, y, i, limit) => [0, 1, 2].some((k) => Math.abs(x[i + k] - y[i + k]) > limit);
+  for (let i = 0; i < a.length; i += 4) {
+    if (!differs(a, b, i, 0)) continue;
+    changed++;
+    if (differs(b, c, i, 3)) wrong++;
+  }
+  const like = (eyes) => round(psnr(eyes[other], truth[other]));
+  const result = {
+    scene: name, filled: like(filled), rendered: like(rendered), changed: round(400 * changed / a.length), wrong: round(100 * wrong / Math.max(changed, 1)),
+    own: psnr(filled[1 - other], rendered[1 - other]), again: psnr(filled[other], again[other]), calls, callsFilled, callsOwn,
+    way: stereo.way, trouble: stereo.trouble, restored: masks() === before, error: renderer.getContext().getError(),
+  };
+  if (picture) result.png = png([filled[other], rendered[other], truth[other], difference(rendered[other], truth[other])]);
+  stereo.dispose();
+  return result;
+}
+
 /** Why three's own stereo is shown, and whether it is shown. */
 async function fallbacks() {
   const results = {};
@@ -453,6 +497,13 @@ async function fallbacks() {
       renderer.autoClear = true;
     };
   });
+  await look('lists', {}, ({ renderer }) => {
+    const { renderLists } = renderer;
+    renderer.renderLists = undefined;
+    return () => {
+      renderer.renderLists = renderLists;
+    };
+  });
   await look('transmission', {}, null, 'transmission', addPanorama);
   const renderer = rendererOf(128, 64, {});
   const { scene } = build('cubes', renderer);
@@ -463,6 +514,16 @@ async function fallbacks() {
   results.orthographic = [stereo.trouble, stereo.way];
   stereo.dispose();
   return results;
+}
+
+/** The level while one is chosen, and before and after, and what the headset is asked for. */
+function foveations() {
+  let value = 0.5;
+  const xr = { getFoveation: () => value, setFoveation(other) { value = other; } }, kept = {};
+  const look = (chosen) => [levelName(chosen, xr, kept), value];
+  const results = [null, 'low', 'high', null].map(look);
+  value = 1;
+  return [...results, look('off'), [levelName(null, null, kept), value], look(null)];
 }
 
 async function scenes(chosen, more) {
@@ -642,9 +703,10 @@ function framebufferOf(renderer, { readBuffer }) {
 }
 
 /** The chooser on a device in virtual time: which way it takes, how often it changes, and how often it measures. */
-function choose({ gpu, cpu = [1, 1], late = 4, refresh = 60, timed = true, seconds = 10, noise = 0 }) {
+function choose({ gpu, cpu = [1, 1, 1], ways = ['rendered', 'synthesized'], isRanked = false, late = 4, refresh = 60, timed = true, seconds = 10, noise = 0 }) {
   const chooser = new Chooser();
-  let now = 5000, changes = 0, seed = 7, dear = 0;
+  chooser.sceneChanged(ways, isRanked);
+  let now = 5000, changes = 0, seed = 7, dear = 0, last = chooser.way, since = now, shortest = Infinity;
   const pending = [];
   const random = () => {
     seed = Math.imul(seed, 1103515245) + 12345 & 0x7fffffff;
@@ -652,7 +714,11 @@ function choose({ gpu, cpu = [1, 1], late = 4, refresh = 60, timed = true, secon
   };
   for (let end = now + 1000 * seconds; now < end;) {
     const { way } = chooser;
-    const i = Number(way === 'synthesized');
+    const i = ways.indexOf(way);
+    if (way !== last) {
+      shortest = Math.min(shortest, now - since);
+      [last, since] = [way, now];
+    }
     const ms = gpu[i] * (1 + noise * random());
     const busy = Math.max(ms, cpu[i]);
     now += refresh > 0 ? Math.ceil(busy * refresh / 1000) * 1000 / refresh : busy;
@@ -662,7 +728,7 @@ function choose({ gpu, cpu = [1, 1], late = 4, refresh = 60, timed = true, secon
     changes += Number(chooser.choice.way !== before);
     dear += Number(way !== chooser.choice.way);
   }
-  return { ...chooser.choice, changes, dear };
+  return { ...chooser.choice, changes, dear, shortest };
 }
 
 /** Frames of all ways without reading anything back: the console must stay silent. */
@@ -700,12 +766,6 @@ async function special() {
   await look('transparent canvas', { renderer: { alpha: true, antialias: true }, tweak: (scene) => {
     scene.remove(scene.children.find(({ material }) => material?.uniforms?.turbidity));
   } });
-  // Without three's list of what is to be drawn, layers hide objects.
-  const renderer = rendererOf(256, 128, {});
-  const { renderLists } = renderer;
-  renderer.renderLists = undefined;
-  await look('layers');
-  renderer.renderLists = renderLists;
   // Without encoded colour in targets of ours, it stays linear until the last pass.
   Object.defineProperty(THREE.WebGLRenderTarget.prototype, 'isXRRenderTarget', { get: () => false, set() {}, configurable: true });
   await look('linear', { frames: 8 });
@@ -713,5 +773,5 @@ async function special() {
   return results;
 }
 
-globalThis.check = { behind, levels, controllers, lines, fallbacks, state, lost, near, composed, choose, quiet, special, views, compare, scenes, session, THREE, StereoSynthesis, rendererOf, build, halves, png, psnr, names };
+globalThis.check = { behind, foveations, holes, levels, controllers, lines, fallbacks, state, lost, near, composed, choose, quiet, special, views, compare, scenes, session, THREE, StereoSynthesis, rendererOf, build, halves, png, psnr, names };
 globalThis.ready = true;

@@ -8,6 +8,7 @@ const stereo = new StereoSynthesis(renderer, { mode: 'auto', dominantEye: 'left'
 const scene = new Scene(), camera = new PerspectiveCamera();
 stereo.bothEyes = 1 << 5;
 stereo.foveation = 'medium';
+stereo.holes = 'rendered';
 stereo.gaze = new Vector3(0, 0, -1);
 stereo.stereoCamera.eyeSep = 0.06;
 renderer.setAnimationLoop(() => stereo.render(scene, camera));
@@ -20,7 +21,7 @@ const eyes = stereo.eyes(camera);
 const view = stereo.view(eyes);
 if (view) renderer.render(scene, view.camera);
 const drawn: boolean = stereo.synthesize({ color, depth, samples: 4 }, eyes, null);
-console.log(way, costs?.rendered, reason, drawn, stereo.trouble?.length, undo);
+console.log(way, costs?.rendered, costs?.filled, reason, drawn, stereo.trouble?.length, undo);
 
 // @ts-expect-error A way that does not exist.
 stereo.mode = 'both';
