@@ -206,9 +206,9 @@ impl<'a> Field<'a> {
         for _ in 0..self.plan.rounds {
             for timed in &mut self.contenders {
                 interrupt::check()?;
-                let times =
-                    timed.contender.pass_times(&mut self.prepared, &self.pairs[0], &mut self.frame)?;
-                timed.add_passes(times);
+                let costs =
+                    timed.contender.pass_costs(&mut self.prepared, &self.pairs[0], &mut self.frame)?;
+                timed.add_passes(costs.times);
             }
         }
         self.bar.inc(1);
