@@ -71,6 +71,11 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
     assert!(mean("yoro-gather", "texture_mib") > mean("mono", "texture_mib"));
     assert_eq!(values(&whole, "mono", "hole_share"), values(&whole, "yoro-paper", "hole_share"));
     assert!((0.0..0.3).contains(&mean("mono", "hole_share")));
+    assert!((0.001..0.2).contains(&mean("yoro-holes-rendered", "open_share")));
+    let draws = |contender: &str| mean(contender, "draw_calls");
+    assert!(draws("yoro-gather") < draws("yoro-holes-rendered"));
+    // Opaque surfaces are drawn for both eyes, and both have passes of their own.
+    assert!(draws("yoro-holes-rendered") < 2.0 * draws("yoro-gather"));
 
     // As if the power failed in the middle of the second round.
     let text = fs::read_to_string(&file).unwrap();

@@ -100,7 +100,7 @@ fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &Scene) -> anyhow
     for method in Method::ALL {
         if is_tested(method, settings, gl) {
             let options = StereoOptions { holes: HoleMethod::Rendered, ..StereoOptions::default() };
-            StereoSession::new(gl, method.into(), settings, &options)?.prepare(&mut scene)?;
+            StereoSession::new(gl, method.into(), settings, &options)?.prepare(&mut scene, false)?;
         }
     }
     Ok(())

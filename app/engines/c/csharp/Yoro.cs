@@ -573,8 +573,9 @@ namespace Yoro
         public static extern int yoro_gl_prepare_motion(YoroContext* context, YoroMotionWarp* warp);
 
         /// <summary>
-        ///  Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it. Call it after the
-        ///  rendered eye's opaque objects, and before transparent objects and effects that are drawn for each eye.
+        ///  Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it except for open holes.
+        ///  Call it after the rendered eye's opaque objects, and before transparent objects and effects that are drawn for each
+        ///  eye.
         ///
         ///  Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated. While sizes stay
         ///  the same it allocates and compiles nothing, and does not wait for the GPU.

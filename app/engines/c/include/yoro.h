@@ -1718,8 +1718,9 @@ YoroResult yoro_gl_prepare_pose(YoroContext *context, const YoroPoseWarp *warp);
 YoroResult yoro_gl_prepare_motion(YoroContext *context, const YoroMotionWarp *warp);
 
 /**
- * Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it. Call it after the
- * rendered eye's opaque objects, and before transparent objects and effects that are drawn for each eye.
+ * Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it except for open holes.
+ * Call it after the rendered eye's opaque objects, and before transparent objects and effects that are drawn for each
+ * eye.
  *
  * Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated. While sizes stay
  * the same it allocates and compiles nothing, and does not wait for the GPU.
@@ -1875,6 +1876,15 @@ typedef struct {
    * 1: makes a composer, too, for yoro_vk_compose. 0: it is not used.
    */
   uint32_t composes;
+  /**
+   * YORO_OUTPUT_OPEN_STENCIL, for a depth_format with stencil, or YORO_OUTPUT_OPEN_DEPTH, for any: the mark then replaces
+   * the synthesized depth. 0: holes are filled.
+   */
+  YoroOutputFlags holes;
+  /**
+   * Must be 0.
+   */
+  uint32_t reserved;
   /**
    * A pipeline cache, or VK_NULL_HANDLE.
    */
@@ -2262,10 +2272,10 @@ YoroResult yoro_vk_release_source(YoroContext *context, YoroVkSourceId id);
 YoroResult yoro_vk_release_target(YoroContext *context, YoroVkTargetId id);
 
 /**
- * Records the synthesis of the other eye into a rectangle of the warp's target size, and overwrites all of it. Records
- * barriers and three draws. Call it after recording the opaque objects of
- * the rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
- * submits nothing, and does not wait.
+ * Records the synthesis of the other eye into a rectangle of the warp's target size, and overwrites all of it except
+ * for open holes. Records barriers and three draws. Call it after recording the opaque objects of the rendered eye, and
+ * before transparent objects and effects that are drawn for each eye. It allocates, compiles and submits nothing, and
+ * does not wait.
  *
  * Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Transitions
  * the images from their state `before` to their state `after`.

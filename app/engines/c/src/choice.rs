@@ -2,7 +2,7 @@
 
 use std::ptr;
 
-use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, StereoPath};
+use yoro::choice::{Aim, Choice, Chooser, Cost, FrameEnd, Reason, StereoPath};
 
 use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
 use crate::versioned::{self, versioned};
@@ -125,7 +125,7 @@ pub unsafe extern "C" fn yoro_chooser_create(first: YoroWay, chooser: *mut *mut 
         let first = way(first)?.ok_or_else(|| {
             Failure::value("first is no way to begin with: give YORO_WAY_TWO_VIEWS or YORO_WAY_SYNTHESIS")
         })?;
-        let made = Box::new(YoroChooser { chooser: Chooser::new(first) });
+        let made = Box::new(YoroChooser { chooser: Chooser::new(Aim::Cheapest, first) });
         // SAFETY: as above.
         unsafe { chooser.write(Box::into_raw(made)) };
         Ok(())
@@ -220,11 +220,12 @@ impl YoroFrameEnd {
 impl YoroChoice {
     fn of(chooser: &Chooser) -> YoroChoice {
         let Choice { path, reason, costs_ms } = chooser.choice();
+        let way = |path| if path == StereoPath::TwoViews { YORO_WAY_TWO_VIEWS } else { YORO_WAY_SYNTHESIS };
         YoroChoice {
             struct_size: size_of::<YoroChoice>() as u32,
-            next: chooser.path().index() as YoroWay,
+            next: way(chooser.path()),
             is_measuring: chooser.is_measuring().into(),
-            chosen: path.index() as YoroWay,
+            chosen: way(path),
             reason: match reason {
                 Reason::Unmeasured => YORO_REASON_UNMEASURED,
                 Reason::Cheaper => YORO_REASON_CHEAPER,
@@ -233,7 +234,8 @@ impl YoroChoice {
                 Reason::BothHoldRate => YORO_REASON_BOTH_HOLD_RATE,
                 Reason::Incomparable => YORO_REASON_INCOMPARABLE,
             },
-            cost_ms: costs_ms.unwrap_or_default(),
+            cost_ms: [StereoPath::TwoViews, StereoPath::Synthesis]
+                .map(|path| costs_ms[path.index()].unwrap_or_default()),
         }
     }
 }

@@ -13,7 +13,6 @@ use yoro::opengl::{
     PassTime, Profiling, Source,
 };
 use yoro::synthesis::backend::WarpKind;
-use yoro::synthesis::{HoleMark, Holes};
 
 use crate::context::{
     Backend, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, YoroTimes, create, enter_as,
@@ -27,7 +26,7 @@ use crate::result::{
 };
 use crate::types::{
     Kind, YORO_OUTPUT_DEPTH, YORO_OUTPUT_OPEN_DEPTH, YORO_OUTPUT_OPEN_STENCIL, YORO_OUTPUT_SRGB,
-    YoroOutputFlags, YoroWarpKind, other_kind, warp_kind,
+    YoroOutputFlags, YoroWarpKind, holes, other_kind, warp_kind,
 };
 use crate::versioned::{self, versioned};
 use crate::views::{YoroWarp, read_warp};
@@ -242,8 +241,9 @@ pub unsafe extern "C" fn yoro_gl_prepare_motion(
     }
 }
 
-/// Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it. Call it after the
-/// rendered eye's opaque objects, and before transparent objects and effects that are drawn for each eye.
+/// Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it except for open holes.
+/// Call it after the rendered eye's opaque objects, and before transparent objects and effects that are drawn for each
+/// eye.
 ///
 /// Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated. While sizes stay
 /// the same it allocates and compiles nothing, and does not wait for the GPU.
@@ -611,14 +611,6 @@ pub(crate) fn outputs(bits: YoroOutputFlags) -> Result<Outputs, Failure> {
         return Err(Failure::value(format!("{bits} has bits that are no YORO_OUTPUT_ flags")));
     }
     let has = |bit| bits & bit != 0;
-    let holes = match (has(YORO_OUTPUT_OPEN_STENCIL), has(YORO_OUTPUT_OPEN_DEPTH)) {
-        (false, false) => Holes::Filled,
-        (true, false) => Holes::Open(HoleMark::Stencil),
-        (false, true) if !has(YORO_OUTPUT_DEPTH) => Holes::Open(HoleMark::Depth),
-        _ => {
-            let what = "YORO_OUTPUT_OPEN_DEPTH goes neither with YORO_OUTPUT_DEPTH nor with YORO_OUTPUT_OPEN_STENCIL";
-            return Err(Failure::value(what));
-        }
-    };
+    let holes = holes(bits)?;
     Ok(Outputs { depth: has(YORO_OUTPUT_DEPTH), srgb: has(YORO_OUTPUT_SRGB), holes, ..Outputs::default() })
 }

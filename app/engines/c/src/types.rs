@@ -1,6 +1,7 @@
 //! Versions, and the small types that the structures consist of.
 
 use yoro::eyes::{DepthConvention, Eye};
+use yoro::synthesis::{HoleMark, Holes};
 
 use crate::result::Failure;
 
@@ -107,6 +108,19 @@ pub const YORO_OUTPUT_OPEN_STENCIL: YoroOutputFlags = 4;
 /// The same for materials without stencil: depth is the nearest in each pixel that is written, so that the scene passes
 /// the depth test in open ones alone. Not together with YORO_OUTPUT_DEPTH.
 pub const YORO_OUTPUT_OPEN_DEPTH: YoroOutputFlags = 8;
+
+/// Returns what becomes of holes by the bits of some flags.
+pub(crate) fn holes(bits: YoroOutputFlags) -> Result<Holes, Failure> {
+    let open = YORO_OUTPUT_OPEN_STENCIL | YORO_OUTPUT_OPEN_DEPTH;
+    match bits & (open | YORO_OUTPUT_DEPTH) {
+        0 | YORO_OUTPUT_DEPTH => Ok(Holes::Filled),
+        YORO_OUTPUT_OPEN_DEPTH => Ok(Holes::Open(HoleMark::Depth)),
+        both if both & open == YORO_OUTPUT_OPEN_STENCIL => Ok(Holes::Open(HoleMark::Stencil)),
+        _ => Err(Failure::value(
+            "YORO_OUTPUT_OPEN_DEPTH goes neither with YORO_OUTPUT_DEPTH nor with YORO_OUTPUT_OPEN_STENCIL",
+        )),
+    }
+}
 
 /// The pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. The
 /// layout is that of XrPosef.

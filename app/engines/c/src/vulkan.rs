@@ -145,10 +145,10 @@ pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: Y
     }
 }
 
-/// Records the synthesis of the other eye into a rectangle of the warp's target size, and overwrites all of it. Records
-/// barriers and three draws. Call it after recording the opaque objects of
-/// the rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
-/// submits nothing, and does not wait.
+/// Records the synthesis of the other eye into a rectangle of the warp's target size, and overwrites all of it except
+/// for open holes. Records barriers and three draws. Call it after recording the opaque objects of the rendered eye, and
+/// before transparent objects and effects that are drawn for each eye. It allocates, compiles and submits nothing, and
+/// does not wait.
 ///
 /// Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Transitions
 /// the images from their state `before` to their state `after`.

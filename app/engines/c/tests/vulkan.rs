@@ -304,6 +304,35 @@ fn a_context_of_any_pose_records_pose_warps() {
     }
 }
 
+/// Which pixels are open, and their marks, are compared with a reference in the core's tests.
+#[test]
+fn holes_are_left_open_with_either_mark() {
+    let Some(gpu) = Gpu::open() else { return };
+    let marks = [
+        (YORO_OUTPUT_OPEN_STENCIL, vk::Format::D32_SFLOAT_S8_UINT),
+        (YORO_OUTPUT_OPEN_DEPTH, vk::Format::D32_SFLOAT),
+    ];
+    let contexts = marks.map(|(holes, depth_format)| {
+        let context = create(&YoroVkInfo { holes, depth_format, ..gpu.info() }).unwrap();
+        let (source, mut target) = images(&gpu);
+        let usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        target.depth = plane(gpu.image(depth_format, usage, [256, 128]), depth_format);
+        let mut frame: YoroVkFrame = zeroed(|f: &mut YoroVkFrame| &mut f.struct_size);
+        // SAFETY: live handles and complete structures.
+        unsafe {
+            assert_eq!(yoro_vk_register_source(context, &source, &mut frame.source), YORO_OK);
+            assert_eq!(yoro_vk_register_target(context, &target, &mut frame.target), YORO_OK);
+            assert_eq!(yoro_vk_record(context, gpu.commands, &WARP, &frame), YORO_OK);
+        }
+        context
+    });
+    // SAFETY: nothing is pending afterwards.
+    unsafe {
+        gpu.execute();
+        assert!(contexts.into_iter().all(|context| yoro_destroy(context) == YORO_OK));
+    }
+}
+
 /// Pictures of the composer on Vulkan are compared in the core's tests.
 #[test]
 fn a_context_with_a_composer_records_compositions() {
@@ -378,7 +407,7 @@ fn a_vulkan_host_may_pass_any_numbers() {
     let kinds = [YORO_WARP_KIND_EYES, YORO_WARP_KIND_POSE, YORO_WARP_KIND_MOTION];
     for _ in 0..60 {
         let mut wrong = YoroVkInfo { warp_kind: random.pick(&kinds), composes: 1, ..gpu.info() };
-        let numbers: [fn(&mut YoroVkInfo, u32); 8] = [
+        let numbers: [fn(&mut YoroVkInfo, u32); 9] = [
             |i, n| i.color_format = vk::Format::from_raw(n as i32),
             |i, n| i.depth_format = vk::Format::from_raw(n as i32),
             |i, n| i.max_source_width = n,
@@ -386,6 +415,7 @@ fn a_vulkan_host_may_pass_any_numbers() {
             |i, n| i.queue_family = n,
             |i, n| i.warp_kind = n,
             |i, n| i.composes = n,
+            |i, n| i.holes = n,
             |i, n| i.timed_frames = n % 1000,
         ];
         (0..2).for_each(|_| random.pick(&numbers)(&mut wrong, random.word()));
@@ -508,6 +538,16 @@ fn wrong_vulkan_arguments_return_their_codes() {
         (&|i| i.max_source_width = 0, YORO_ERROR_VALUE),
         (&|i| i.max_target_height = 0, YORO_ERROR_VALUE),
         (&|i| i.composes = 7, YORO_ERROR_VALUE),
+        (&|i| i.reserved = 1, YORO_ERROR_VALUE),
+        (&|i| i.holes = YORO_OUTPUT_DEPTH, YORO_ERROR_VALUE),
+        (&|i| i.holes = YORO_OUTPUT_OPEN_DEPTH | YORO_OUTPUT_OPEN_STENCIL, YORO_ERROR_VALUE),
+        // Depth without stencil, no depth, and passes that open no holes.
+        (&|i| i.holes = YORO_OUTPUT_OPEN_STENCIL, YORO_ERROR_UNSUPPORTED),
+        (
+            &|i| (i.holes, i.depth_format) = (YORO_OUTPUT_OPEN_DEPTH, vk::Format::UNDEFINED),
+            YORO_ERROR_UNSUPPORTED,
+        ),
+        (&|i| (i.holes, i.warp_kind) = (YORO_OUTPUT_OPEN_DEPTH, YORO_WARP_KIND_POSE), YORO_ERROR_UNSUPPORTED),
         (&|i| i.max_target_height = u32::MAX, YORO_ERROR_TOO_LARGE),
     ];
     for (i, (change, expected)) in table.iter().enumerate() {

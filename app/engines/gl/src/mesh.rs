@@ -1,5 +1,6 @@
 //! Indexed triangles on the GPU.
 
+use std::cell::Cell;
 use std::ops::Range;
 use std::rc::Rc;
 
@@ -8,14 +9,15 @@ use glow::HasContext;
 use crate::{Context, GlError, Shape};
 
 /// The number of copies of vertices that are rewritten: the GPU may still be reading those of earlier frames.
-const COPIES: usize = 3;
+const COPIES: usize = 4;
 
 /// One or more vertex arrays, each with an interleaved vertex buffer of floats, and 32-bit indices.
 pub struct Mesh {
     gl: Rc<Context>,
     /// One copy, or [`COPIES`] if the vertices are rewritten.
     copies: Vec<(glow::VertexArray, glow::Buffer)>,
-    current: usize,
+    /// The indices of the copies: of the current one, the previous one, and those that are rewritten next, last first.
+    order: Cell<[usize; COPIES]>,
     indices: glow::Buffer,
     index_count: usize,
     vertex_count: usize,
@@ -77,7 +79,7 @@ impl Mesh {
             let mut mesh = Mesh {
                 gl: gl.clone(),
                 copies: Vec::with_capacity(copies),
-                current: 0,
+                order: Cell::new(std::array::from_fn(|place| place % copies)),
                 indices: index_buffer,
                 index_count: indices.len(),
                 vertex_count: vertices.len(),
@@ -122,16 +124,24 @@ impl Mesh {
     pub fn rewrite<V: bytemuck::Pod>(&mut self, vertices: &[V]) {
         let bytes: &[u8] = bytemuck::cast_slice(vertices);
         assert_eq!(bytes.len(), self.vertex_count * self.vertex_bytes as usize, "other vertices than before");
-        self.current = (self.current + 1) % self.copies.len();
-        let gl = self.gl.raw();
-        // SAFETY: the buffer lives as long as the mesh and has exactly this size.
-        unsafe {
-            gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.copies[self.current].1));
-            gl.buffer_sub_data_u8_slice(glow::ARRAY_BUFFER, 0, bytes);
-        }
+        self.order.get_mut().rotate_right(1);
+        self.write(0, 0, bytes);
     }
 
-    /// Replaces those vertices from `first` on that [`Mesh::bind_with_previous`] gives as the previous ones.
+    /// Replaces all vertices that [`Mesh::bind_with_previous`] gives as the previous ones, in a copy that no earlier frame reads.
+    ///
+    /// # Panics
+    /// If the number of vertices differs.
+    pub fn renew_previous<V: bytemuck::Pod>(&self, vertices: &[V]) {
+        let bytes: &[u8] = bytemuck::cast_slice(vertices);
+        assert_eq!(bytes.len(), self.vertex_count * self.vertex_bytes as usize, "other vertices than before");
+        let mut order = self.order.get();
+        order.swap(1, COPIES - 1);
+        self.order.set(order);
+        self.write(1, 0, bytes);
+    }
+
+    /// Replaces vertices from `first` on after [`Mesh::renew_previous`].
     ///
     /// # Panics
     /// If there are not as many.
@@ -139,17 +149,22 @@ impl Mesh {
         let bytes: &[u8] = bytemuck::cast_slice(vertices);
         let offset = first * self.vertex_bytes as usize;
         assert!(offset + bytes.len() <= self.vertex_count * self.vertex_bytes as usize, "too many vertices");
+        self.write(1, offset, bytes);
+    }
+
+    /// Writes bytes that fit into a copy, which is given by its place in the order.
+    fn write(&self, place: usize, offset: usize, bytes: &[u8]) {
         let gl = self.gl.raw();
-        // SAFETY: the buffer lives as long as the mesh and has these bytes.
+        // SAFETY: the buffer lives as long as the mesh, and the callers check the size.
         unsafe {
-            gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.copies[self.previous()].1));
+            gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.copy(place).1));
             gl.buffer_sub_data_u8_slice(glow::ARRAY_BUFFER, offset as i32, bytes);
         }
     }
 
-    /// Returns the index of the copy before the current one.
-    fn previous(&self) -> usize {
-        (self.current + self.copies.len() - 1) % self.copies.len()
+    /// Returns the copy at a place in the order.
+    fn copy(&self, place: usize) -> (glow::VertexArray, glow::Buffer) {
+        self.copies[self.order.get()[place]]
     }
 
     /// Returns the number of indices.
@@ -160,14 +175,14 @@ impl Mesh {
     /// Binds the vertex array for the following [`Mesh::draw`] calls.
     pub fn bind(&self) {
         // SAFETY: the vertex array lives as long as the mesh.
-        unsafe { self.gl.raw().bind_vertex_array(Some(self.copies[self.current].0)) }
+        unsafe { self.gl.raw().bind_vertex_array(Some(self.copy(0).0)) }
     }
 
     /// Binds the vertex array as [`Mesh::bind`] does, with one more attribute at the location after the last one: the first
     /// three floats of each vertex before the last [`Mesh::rewrite`], or its present ones if it has not `moved`.
     pub fn bind_with_previous(&self, moved: bool) {
         self.bind();
-        let previous = self.copies[if moved { self.previous() } else { self.current }].1;
+        let previous = self.copy(usize::from(moved)).1;
         let gl = self.gl.raw();
         // SAFETY: the buffer lives as long as the vertex array, and its vertices begin with three floats or are longer.
         unsafe {

@@ -186,7 +186,7 @@ impl Subcommand for RenderArgs {
         let mut truth = measured
             .then(|| StereoSession::new(gl, Method::Conventional.into(), &settings, &options))
             .transpose()?;
-        session.prepare(&mut prepared)?;
+        session.prepare(&mut prepared, foveation.is_some())?;
         let mut frame = StereoFrame::new(gl, self.eyes.size)?;
         let mut reports = Vec::new();
         let bar = progress_bar(heads.len() as u64);

@@ -172,10 +172,11 @@ choices! {
     }
 }
 
-/// A stereo method, or the cheaper one of two.
+/// A stereo method, or one that is chosen by its cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum MethodChoice {
-    /// The cheaper one of conventional and yoro, which are measured alternately while in use.
+    /// One of conventional and yoro, which are measured alternately while in use: the cheaper one, or with holes=rendered the
+    /// best that holds the display's rate.
     #[default]
     Auto,
     /// The given method.

@@ -165,7 +165,7 @@ impl Estimator {
         let mut session = StereoSession::new(&self.gl, method.into(), &self.settings, &options)?;
         let views = pair.stereo_views(level.foveation().as_ref(), Gaze::Axes(pair.axes()))?;
         let mut images = StereoImages::new(&self.gl)?;
-        session.prepare(&mut self.scene)?;
+        session.prepare(&mut self.scene, views.inset.is_some())?;
         self.recorder.start();
         session.frame(&mut self.scene, &views, FrameTargets::Images(&mut images), None)?;
         Ok(self.recorder.take())

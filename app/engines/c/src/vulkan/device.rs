@@ -114,7 +114,7 @@ impl Vulkan {
             dynamic_rendering: info.dynamic_rendering == 1,
             debug_utils,
         };
-        let options = info.options();
+        let options = info.options()?;
         // SAFETY: the header requires handles that are valid, belong together, and outlive the context.
         let passes = unsafe {
             match warp_kind(info.warp_kind)? {

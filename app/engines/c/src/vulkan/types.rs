@@ -11,8 +11,10 @@ use crate::result::{
     YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YORO_ERROR_UNSUPPORTED,
     YORO_ERROR_VALUE, YoroMessages,
 };
-use crate::types::{Kind, YoroWarpKind, warp_kind};
-use crate::versioned::versioned;
+use crate::types::{
+    Kind, YORO_OUTPUT_OPEN_DEPTH, YORO_OUTPUT_OPEN_STENCIL, YoroOutputFlags, YoroWarpKind, holes, warp_kind,
+};
+use crate::versioned::{check_reserved, versioned};
 
 /// vkGetInstanceProcAddr of the Vulkan loader, or of a layer that replaces it.
 pub type YoroVkLoader = Option<
@@ -59,6 +61,11 @@ pub struct YoroVkInfo {
     pub warp_kind: YoroWarpKind,
     /// 1: makes a composer, too, for yoro_vk_compose. 0: it is not used.
     pub composes: u32,
+    /// YORO_OUTPUT_OPEN_STENCIL, for a depth_format with stencil, or YORO_OUTPUT_OPEN_DEPTH, for any: the mark then replaces
+    /// the synthesized depth. 0: holes are filled.
+    pub holes: YoroOutputFlags,
+    /// Must be 0.
+    pub reserved: u32,
     /// A pipeline cache, or VK_NULL_HANDLE.
     pub pipeline_cache: vk::PipelineCache,
     /// Receives error messages, including those of later calls.
@@ -206,22 +213,28 @@ pub struct YoroVkUses {
 versioned!(YoroVkUses);
 
 impl YoroVkInfo {
-    pub(super) fn options(&self) -> Options {
+    pub(super) fn options(&self) -> Result<Options, Failure> {
+        check_reserved("info", &[self.reserved])?;
+        if self.holes & !(YORO_OUTPUT_OPEN_STENCIL | YORO_OUTPUT_OPEN_DEPTH) != 0 {
+            let holes = self.holes;
+            return Err(Failure::value(format!("holes is {holes}: give a YORO_OUTPUT_OPEN_ flag or 0")));
+        }
         let writes_depth = self.depth_format != vk::Format::UNDEFINED;
-        Options {
+        Ok(Options {
             color_format: self.color_format,
             depth_format: writes_depth.then_some(self.depth_format),
+            holes: holes(self.holes)?,
             max_source_size: [self.max_source_width, self.max_source_height],
             max_target_size: [self.max_target_width, self.max_target_height],
             timed_frames: self.timed_frames,
             pipeline_cache: self.pipeline_cache,
             ..Options::default()
-        }
+        })
     }
 
     /// Returns the size of the buffers of a context with these options, in bytes.
     pub(super) fn buffer_bytes(&self) -> Result<u64, Failure> {
-        let options = self.options();
+        let options = self.options()?;
         Ok(match warp_kind(self.warp_kind)? {
             Kind::AnyView => options.any_view_buffer_bytes(),
             Kind::Gather | Kind::Motion => options.buffer_bytes(),
@@ -308,7 +321,9 @@ impl From<VulkanError> for Failure {
             VulkanError::OutOfMemory { .. } => YORO_ERROR_MEMORY,
             VulkanError::DeviceLost { .. } => YORO_ERROR_DEVICE_LOST,
             VulkanError::Format { .. } | VulkanError::OtherFormat { .. } => YORO_ERROR_FORMAT,
-            VulkanError::QueueFamily(_) | VulkanError::DynamicRendering => YORO_ERROR_UNSUPPORTED,
+            VulkanError::QueueFamily(_) | VulkanError::DynamicRendering | VulkanError::Holes(_) => {
+                YORO_ERROR_UNSUPPORTED
+            }
             VulkanError::Argument(ArgumentError::Size { size, .. }) if size.contains(&0) => YORO_ERROR_VALUE,
             VulkanError::Argument(ArgumentError::TwoComponents) => YORO_ERROR_FORMAT,
             VulkanError::Argument(_) => YORO_ERROR_TOO_LARGE,

@@ -1,14 +1,14 @@
-//! Chooses what is cheaper on this device: two renders, or one render with synthesis.
+//! Chooses how both eyes are made on this device: by two renders, or by one render with synthesis.
 //!
 //! Synthesis costs the same for any scene, so two renders are cheaper where a view is cheap to render. This cannot be
 //! predicted: it depends on the GPU, the scene, the resolution and the temperature. A [`Chooser`] alternates between
-//! both ways for about a second, takes the cheaper one, and measures again when that may have changed. It uses no GL
+//! the ways for about a second, takes one by its [`Aim`], and measures again when that may have changed. It uses no GL
 //! and no clock: it is told when frames ended and what they cost, and says what to render next.
 //!
 //! ```
-//! use yoro::choice::{Chooser, Cost, FrameEnd, StereoPath};
+//! use yoro::choice::{Aim, Chooser, Cost, FrameEnd, StereoPath};
 //!
-//! let mut chooser = Chooser::new(StereoPath::Synthesis);
+//! let mut chooser = Chooser::new(Aim::Cheapest, StereoPath::Synthesis);
 //! # let mut now_ns = 0;
 //! # let render = |_: StereoPath| ();
 //! # let timer = |path| Some(if path == StereoPath::Synthesis { 6.1 } else { 8.9 });
@@ -39,22 +39,43 @@ use samples::Samples;
 pub enum StereoPath {
     /// Both eyes are rendered.
     TwoViews,
+    /// One eye is rendered, the other synthesized except for its [open holes](crate::synthesis::Holes::Open), which are
+    /// rendered.
+    RenderedHoles,
     /// One eye is rendered, the other synthesized.
     Synthesis,
 }
 
 impl StereoPath {
-    /// Both ways, in the order of [`StereoPath::index`].
-    pub const BOTH: [StereoPath; 2] = [StereoPath::TwoViews, StereoPath::Synthesis];
+    /// All ways, the best picture first, in the order of [`StereoPath::index`].
+    pub const ALL: [StereoPath; 3] = [StereoPath::TwoViews, StereoPath::RenderedHoles, StereoPath::Synthesis];
 
-    /// Returns the index in arrays of both ways: 0 for two views, 1 for synthesis.
+    /// Returns the index in arrays of all ways.
     pub fn index(self) -> usize {
         self as usize
     }
+}
 
-    /// Returns the other way.
-    pub fn other(self) -> StereoPath {
-        StereoPath::BOTH[1 - self.index()]
+/// Milliseconds by [`StereoPath::index`]; `None` for a way that was not measured.
+pub type PathTimes = [Option<f32>; StereoPath::ALL.len()];
+
+/// What a way is chosen by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aim {
+    /// The cheaper one of two views and synthesis.
+    Cheapest,
+    /// The best picture of all ways that holds the display's rate; the cheapest way where none does, or where the rate is
+    /// unknown.
+    BestThatHolds,
+}
+
+impl Aim {
+    /// Returns the ways that are measured, the best picture first.
+    pub fn paths(self) -> &'static [StereoPath] {
+        match self {
+            Aim::Cheapest => &[StereoPath::TwoViews, StereoPath::Synthesis],
+            Aim::BestThatHolds => &StereoPath::ALL,
+        }
     }
 }
 
@@ -65,7 +86,7 @@ pub struct Cost {
     /// Costs of frames more than 63 calls ago are ignored.
     pub frames_ago: u32,
     /// The cost in milliseconds: the GPU's time for the frame if there is a timer; otherwise the time from the start of
-    /// the frame's work until the GPU has finished, if the host waits for that. Use the same kind for both ways.
+    /// the frame's work until the GPU has finished, if the host waits for that. Use the same kind for all ways.
     pub ms: f32,
 }
 
@@ -77,7 +98,7 @@ pub struct FrameEnd {
     /// The display's refreshes per second; 0 if unknown, or if the display did not set the pace of this frame, for
     /// example because the host waited for the GPU to measure it.
     pub refresh_hz: f32,
-    /// The way in which the frame was rendered; `None` if neither, for example if both eyes were rendered because
+    /// The way in which the frame was rendered; `None` if none of them, for example if both eyes were rendered because
     /// synthesis was not possible. Such a frame counts for no way.
     pub rendered: Option<StereoPath>,
     /// The cost of this or an earlier frame, if it has become known.
@@ -95,7 +116,7 @@ pub enum Reason {
     Cheaper,
     /// The chosen way costs more, but not by enough to change: the previous way is kept.
     Similar,
-    /// The chosen way holds the display's rate, and the other does not.
+    /// The chosen way holds the display's rate, and the other, or every better one, does not.
     HoldsRate,
     /// Both ways hold the display's rate, which hides their costs, and no costs are known: the previous way is kept.
     BothHoldRate,
@@ -110,38 +131,42 @@ pub struct Choice {
     pub path: StereoPath,
     /// The reason for the choice.
     pub reason: Reason,
-    /// The compared times in milliseconds, by [`StereoPath::index`]; `None` if there was nothing to compare.
-    pub costs_ms: Option<[f32; 2]>,
+    /// The compared times; all `None` if there was nothing to compare.
+    pub costs_ms: PathTimes,
 }
 
-/// Measures both ways in turns, and chooses the cheaper one.
+/// Measures the ways in turns, and chooses one by its [`Aim`].
 ///
-/// A measurement begins a quarter of a second after the first frame and takes a second, or six turns of 7 frames if
-/// that is longer. Each turn lasts an eighth of a second, and its first three frames do not count. Times are means of
-/// the middle half of the samples, so that spikes do not count either.
+/// A measurement begins a quarter of a second after the first frame and takes a second, or three turns of 7 frames for
+/// each way if that is longer. Each turn lasts an eighth of a second, and its first three frames do not count. Times are
+/// means of the middle half of the samples, so that spikes do not count either.
 ///
-/// 1. If only one way holds the display's rate, it is chosen. A way holds the rate if the time between its frames is at
-///    most 1.25 refreshes.
-/// 2. Otherwise the cheaper way is chosen. If a choice was already made in this scene, it changes only if the other way
-///    is cheaper by more than a tenth. Without costs, ways that miss the display's rate are compared by the time
-///    between their frames; for ways that hold it, this time says nothing ([`Reason::BothHoldRate`]).
+/// 1. With [`Aim::BestThatHolds`], the best picture is chosen whose time between frames is at most 1.25 refreshes, and
+///    whose cost, if known, is at most 80 % of a refresh, or 90 % for the way in use.
+/// 2. Otherwise, if only one way holds the display's rate, it is chosen. A way holds the rate if the time between its
+///    frames is at most 1.25 refreshes.
+/// 3. Otherwise the cheapest way is chosen of those that hold the rate, or of all if none does. If a choice was already
+///    made in this scene, it changes only if another way is cheaper by more than a tenth. Without costs, ways that miss
+///    the display's rate are compared by the time between their frames; for ways that hold it, this time says nothing
+///    ([`Reason::BothHoldRate`]).
 ///
 /// A new measurement begins when the scene changes; when the frames' cost or pace has changed by 30 % or the heat by
-/// 0.1, but not within 30 s of the last measurement; and after 1 to 10 min, chosen so that rendering the dearer way
-/// during measurements costs 0.2 % of the time.
+/// 0.1, but not within 30 s of the last measurement; when a way chosen by rule 1 no longer holds the rate, but not within
+/// 5 s; and after 1 to 10 min, chosen so that rendering the dearer ways during measurements costs 0.2 % of the time.
 ///
-/// GPU times depend on the clock that the device has chosen. If it lowers the clock for light loads, both ways appear
-/// to cost nearly the same.
+/// GPU times depend on the clock that the device has chosen. If it lowers the clock for light loads, all ways appear to
+/// cost nearly the same.
 #[derive(Clone, Debug)]
 pub struct Chooser {
+    aim: Aim,
     choice: Choice,
     phase: Phase,
     /// The tags of the last frames, by frame number.
     tags: [Tag; REMEMBERED],
     frames: usize,
     last_ns: Option<i64>,
-    costs: [Samples; 2],
-    intervals: [Samples; 2],
+    costs: [Samples; StereoPath::ALL.len()],
+    intervals: [Samples; StereoPath::ALL.len()],
     /// The refresh rate during the measurement.
     refresh_hz: f32,
     /// Watches frames of the chosen way, in windows of two seconds.
@@ -186,8 +211,14 @@ struct Watch {
     begin_ns: Option<i64>,
     costs: Samples,
     intervals: Samples,
-    /// Cost and interval in the first window, in milliseconds.
-    first: Option<[Option<f32>; 2]>,
+    first: Option<Window>,
+}
+
+/// The means of a window in milliseconds, as far as they are known.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    cost: Option<f32>,
+    interval: Option<f32>,
 }
 
 const REMEMBERED: usize = 64;
@@ -201,27 +232,36 @@ const PAUSE_NS: i64 = 1000 * MS;
 /// The first frames of a turn do not count: caches are cold, and the display still shows frames of the previous turn.
 const UNCOUNTED_FRAMES: u32 = 3;
 const TURN_FRAMES: u32 = 7;
-const TURNS: u32 = 6;
+/// The smallest number of turns of each way.
+const TURNS: u32 = 3;
 /// The number of frames to wait for late costs.
 const LATE_FRAMES: u32 = 16;
 /// A way holds the display's rate if the time between its frames is at most this many refreshes.
 const MAX_REFRESHES_PER_FRAME: f32 = 1.25;
-/// A choice is changed if the other way costs less than this share.
+/// The share of a refresh that the cost of a way may be for it to be chosen as one that holds the rate, and to stay so.
+const ROOM_TO_CHOOSE: f32 = 0.8;
+const ROOM_TO_STAY: f32 = 0.9;
+/// A choice is changed if another way costs less than this share.
 const SWITCH_BELOW: f32 = 0.9;
 /// The share of the time that measuring may cost.
 const OVERHEAD: f32 = 0.002;
-/// The shortest time between two measurements, and the bounds of that time if nothing changes.
+/// The shortest time between two measurements, that after which a way may miss the display's rate, and the bounds of
+/// that time if nothing changes.
 const SHORTEST_REST_NS: i64 = 30_000 * MS;
+const REST_BEFORE_MISSES_NS: i64 = 5_000 * MS;
 const REST_NS: [i64; 2] = [60_000 * MS, 600_000 * MS];
 /// Changes of cost, pace and heat that are worth another measurement.
 const DRIFT: f32 = 1.3;
 const HEAT_DRIFT: f32 = 0.1;
 
 impl Chooser {
-    /// Returns a chooser that begins with the way `first`, and measures as soon as frames come.
-    pub fn new(first: StereoPath) -> Chooser {
+    /// Returns a chooser that begins with the way `first`, or with synthesis if `first` is none of the aim's, and measures as
+    /// soon as frames come.
+    pub fn new(aim: Aim, first: StereoPath) -> Chooser {
+        let path = if aim.paths().contains(&first) { first } else { StereoPath::Synthesis };
         Chooser {
-            choice: Choice { path: first, reason: Reason::Unmeasured, costs_ms: None },
+            aim,
+            choice: Choice { path, reason: Reason::Unmeasured, costs_ms: PathTimes::default() },
             phase: Phase::Settling(None),
             tags: [Tag::Nothing; REMEMBERED],
             frames: 0,
@@ -236,10 +276,15 @@ impl Chooser {
 
     /// Returns the way to render the next frame.
     pub fn path(&self) -> StereoPath {
-        match self.phase {
-            Phase::Measuring { turn, .. } if turn % 2 == 1 => self.choice.path.other(),
-            _ => self.choice.path,
-        }
+        let Phase::Measuring { turn, .. } = self.phase else { return self.choice.path };
+        let paths = self.aim.paths();
+        let chosen = paths.iter().position(|path| *path == self.choice.path).unwrap_or_default();
+        paths[(chosen + turn as usize) % paths.len()]
+    }
+
+    /// Returns what a way is chosen by.
+    pub fn aim(&self) -> Aim {
+        self.aim
     }
 
     /// Returns the last choice, which is rendered unless [`Chooser::is_measuring`] is true.
@@ -255,7 +300,7 @@ impl Chooser {
     /// Starts a new measurement: call it for another scene, another place in it, or another resolution.
     pub fn scene_changed(&mut self) {
         self.phase = Phase::Settling(None);
-        self.choice = Choice { reason: Reason::Unmeasured, costs_ms: None, ..self.choice };
+        self.choice = Choice { reason: Reason::Unmeasured, costs_ms: PathTimes::default(), ..self.choice };
         self.last_ns = None;
     }
 
@@ -325,6 +370,7 @@ impl Chooser {
     /// Moves on to the next turn or phase, if it is time.
     fn proceed(&mut self, end: &FrameEnd) {
         let now_ns = end.now_ns;
+        let paths = self.aim.paths().len() as u32;
         match &mut self.phase {
             Phase::Settling(begin) => {
                 if now_ns - *begin.get_or_insert(now_ns) >= SETTLING_NS {
@@ -337,7 +383,8 @@ impl Chooser {
                     return;
                 }
                 let turns = *turn + 1;
-                if turns >= TURNS && turns.is_multiple_of(2) && now_ns - *begin_ns >= MEASURING_NS {
+                if turns >= TURNS * paths && turns.is_multiple_of(paths) && now_ns - *begin_ns >= MEASURING_NS
+                {
                     self.phase = Phase::Collecting { left: LATE_FRAMES, begin_ns: *begin_ns };
                     self.collect(now_ns);
                 } else {
@@ -346,17 +393,34 @@ impl Chooser {
             }
             Phase::Collecting { .. } => self.collect(now_ns),
             Phase::Resting { since_ns, until_ns } => {
-                let (has_rested, is_due) = (now_ns - *since_ns >= SHORTEST_REST_NS, now_ns >= *until_ns);
+                let (rested_ns, is_due) = (now_ns - *since_ns, now_ns >= *until_ns);
                 let heat = end.heat.filter(|heat| heat.is_finite());
                 let heat_has_drifted =
                     self.heat.zip(heat).is_some_and(|(before, now)| (now - before).abs() >= HEAT_DRIFT);
                 self.heat = self.heat.or(heat);
-                let has_drifted = self.watch.has_drifted(now_ns);
-                if is_due || (has_rested && (has_drifted || heat_has_drifted)) {
+                let window = self.watch.end_window(now_ns);
+                let has_drifted = window.is_some_and(|window| self.watch.has_drifted(&window));
+                let misses = window.is_some_and(|window| self.misses_rate(&window, end.refresh_hz));
+                if is_due
+                    || (rested_ns >= SHORTEST_REST_NS && (has_drifted || heat_has_drifted))
+                    || (rested_ns >= REST_BEFORE_MISSES_NS && misses)
+                {
                     self.measure(end);
                 }
             }
         }
+    }
+
+    /// True if the chosen way was preferred to cheaper ones since it held the rate, and no longer does.
+    fn misses_rate(&self, window: &Window, refresh_hz: f32) -> bool {
+        let Choice { path, reason, costs_ms } = self.choice;
+        let is_preferred =
+            (self.aim, reason) == (Aim::BestThatHolds, Reason::HoldsRate) && path != StereoPath::Synthesis;
+        let exceeds = |ms: Option<f32>, refreshes| ms.is_some_and(|ms| ms * refresh_hz > 1e3 * refreshes);
+        let had_room = !exceeds(costs_ms[path.index()], ROOM_TO_STAY);
+        is_preferred
+            && (exceeds(window.interval, MAX_REFRESHES_PER_FRAME)
+                || (had_room && exceeds(window.cost, ROOM_TO_STAY)))
     }
 
     /// Begins a measurement.
@@ -373,59 +437,92 @@ impl Chooser {
         let Phase::Collecting { left, begin_ns } = &mut self.phase else { return };
         let begin_ns = *begin_ns;
         let is_missing =
-            |path: StereoPath| self.costs[path.index()].len() < self.intervals[path.index()].len();
-        if *left > 0 && StereoPath::BOTH.into_iter().any(is_missing) {
+            |path: &StereoPath| self.costs[path.index()].len() < self.intervals[path.index()].len();
+        if *left > 0 && self.aim.paths().iter().any(is_missing) {
             *left -= 1;
             return;
         }
         self.choice = self.choose();
-        let rest_ns = rest(&self.choice, now_ns - begin_ns);
+        let rest_ns = self.rest(now_ns - begin_ns);
         self.watch = Watch::default();
         self.phase = Phase::Resting { since_ns: now_ns, until_ns: now_ns + rest_ns };
     }
 
     fn choose(&self) -> Choice {
-        let of_both = |samples: &[Samples; 2]| {
-            let [two_views, synthesis] = samples.each_ref().map(Samples::interquartile_mean);
-            Some([two_views?, synthesis?])
+        let stay = |reason| Choice { path: self.choice.path, reason, costs_ms: PathTimes::default() };
+        let costs = self.means(&self.costs);
+        let Some(intervals) = self.means(&self.intervals) else { return stay(Reason::Incomparable) };
+        let is_rate_known = self.refresh_hz > 0.0;
+        let is_within = |times: &PathTimes, path: StereoPath, refreshes: f32| {
+            times[path.index()].is_some_and(|ms| ms * self.refresh_hz <= 1e3 * refreshes)
         };
-        let (costs, intervals) = (of_both(&self.costs), of_both(&self.intervals));
-        let stay = |reason, costs_ms| Choice { path: self.choice.path, reason, costs_ms };
-        let Some(intervals) = intervals else { return stay(Reason::Incomparable, None) };
-        if self.refresh_hz > 0.0 {
-            let in_time = intervals.map(|ms| ms * self.refresh_hz <= 1e3 * MAX_REFRESHES_PER_FRAME);
-            if in_time[0] != in_time[1] {
-                let path = if in_time[0] { StereoPath::TwoViews } else { StereoPath::Synthesis };
-                return Choice { path, reason: Reason::HoldsRate, costs_ms: Some(intervals) };
-            }
-            if costs.is_none() && in_time[0] {
-                return stay(Reason::BothHoldRate, None);
-            }
+        let is_in_time =
+            |path: &StereoPath| is_rate_known && is_within(&intervals, *path, MAX_REFRESHES_PER_FRAME);
+        let has_room = |path: &StereoPath| {
+            let is_in_use = *path == self.choice.path && self.choice.reason != Reason::Unmeasured;
+            let room = if is_in_use { ROOM_TO_STAY } else { ROOM_TO_CHOOSE };
+            costs.is_none_or(|costs| is_within(&costs, *path, room))
+        };
+        let paths = self.aim.paths();
+        let best = paths.iter().find(|path| is_in_time(path) && has_room(path));
+        if let (Aim::BestThatHolds, Some(path)) = (self.aim, best) {
+            let costs_ms = costs.unwrap_or(intervals);
+            return Choice { path: *path, reason: Reason::HoldsRate, costs_ms };
         }
-        let costs = costs.unwrap_or(intervals);
-        let [now, other] = [self.choice.path, self.choice.path.other()].map(|path| costs[path.index()]);
+        let in_time = paths.iter().filter(|path| is_in_time(path)).count();
+        if let (1, Some(path)) = (in_time, paths.iter().find(|path| is_in_time(path))) {
+            return Choice { path: *path, reason: Reason::HoldsRate, costs_ms: intervals };
+        }
+        if costs.is_none() && in_time > 0 {
+            return stay(Reason::BothHoldRate);
+        }
+        self.cheapest(costs.unwrap_or(intervals), |path| in_time == 0 || is_in_time(path))
+    }
+
+    /// Returns the mean times of all ways, or `None` if one of them lacks its own.
+    fn means(&self, samples: &[Samples; StereoPath::ALL.len()]) -> Option<PathTimes> {
+        let mut means = PathTimes::default();
+        for path in self.aim.paths() {
+            means[path.index()] = Some(samples[path.index()].interquartile_mean()?);
+        }
+        Some(means)
+    }
+
+    /// Chooses the cheapest of some ways.
+    fn cheapest(&self, costs_ms: PathTimes, is_among: impl Fn(&StereoPath) -> bool) -> Choice {
+        let chosen = self.choice.path;
+        let cost =
+            |path: StereoPath| costs_ms[path.index()].filter(|_| is_among(&path)).unwrap_or(f32::INFINITY);
+        let ordered = |a: &StereoPath, b: &StereoPath| cost(*a).total_cmp(&cost(*b));
+        let path = self.aim.paths().iter().copied().min_by(ordered).unwrap_or(chosen);
         let share = if self.choice.reason == Reason::Unmeasured { 1.0 } else { SWITCH_BELOW };
-        if other < now * share {
-            Choice { path: self.choice.path.other(), reason: Reason::Cheaper, costs_ms: Some(costs) }
-        } else if now <= other {
-            stay(Reason::Cheaper, Some(costs))
+        if cost(path) < cost(chosen) * share {
+            Choice { path, reason: Reason::Cheaper, costs_ms }
         } else {
-            stay(Reason::Similar, Some(costs))
+            let is_cheapest = cost(chosen) <= cost(path);
+            let reason = if is_cheapest { Reason::Cheaper } else { Reason::Similar };
+            Choice { path: chosen, reason, costs_ms }
         }
     }
-}
 
-/// Returns the time until the next measurement in nanoseconds. Measuring renders the dearer way half of the time.
-fn rest(choice: &Choice, measuring_ns: i64) -> i64 {
-    let [shortest, longest] = REST_NS;
-    match choice.costs_ms {
-        Some([a, b]) => {
-            let more = (a.max(b) / a.min(b) - 1.0) / 2.0;
-            ((measuring_ns as f32 * more / OVERHEAD) as i64).clamp(shortest, longest)
+    /// Returns the time until the next measurement in nanoseconds. Measuring renders each way for the same time.
+    fn rest(&self, measuring_ns: i64) -> i64 {
+        let [shortest, longest] = REST_NS;
+        let Choice { path, reason, costs_ms } = &self.choice;
+        let costs = || costs_ms.iter().flatten();
+        match (costs().copied().reduce(f32::min), reason) {
+            // Nothing looks better, and the watch notices when it no longer holds the rate.
+            (_, Reason::HoldsRate) if self.aim == Aim::BestThatHolds && *path == StereoPath::TwoViews => {
+                longest
+            }
+            (Some(least), _) => {
+                let more = costs().sum::<f32>() / costs().count() as f32 / least - 1.0;
+                ((measuring_ns as f32 * more / OVERHEAD) as i64).clamp(shortest, longest)
+            }
+            // Nothing can be compared while both hold the rate, and the watch notices when the chosen one no longer does.
+            (None, Reason::BothHoldRate) => longest,
+            (None, _) => shortest,
         }
-        // Nothing can be compared while both hold the rate, and the watch notices when the chosen one no longer does.
-        None if choice.reason == Reason::BothHoldRate => longest,
-        None => shortest,
     }
 }
 
@@ -437,21 +534,22 @@ impl Watch {
         self.intervals.clear();
     }
 
-    /// True if a window ends now whose cost or frame time differs from that of the first window.
-    fn has_drifted(&mut self, now_ns: i64) -> bool {
+    /// Returns the window that ends now, if one does.
+    fn end_window(&mut self, now_ns: i64) -> Option<Window> {
         if now_ns - *self.begin_ns.get_or_insert(now_ns) < WATCH_NS {
-            return false;
+            return None;
         }
-        let now = [self.costs.interquartile_mean(), self.intervals.interquartile_mean()];
+        let (cost, interval) = (self.costs.interquartile_mean(), self.intervals.interquartile_mean());
         self.restart();
-        let Some(first) = self.first else {
-            self.first = Some(now);
-            return false;
+        Some(Window { cost, interval })
+    }
+
+    /// True if the cost or the frame time of a window differs from that of the first one.
+    fn has_drifted(&mut self, now: &Window) -> bool {
+        let first = *self.first.get_or_insert(*now);
+        let drifted = |first: Option<f32>, now: Option<f32>| {
+            first.zip(now).is_some_and(|(first, now)| now > first * DRIFT || now * DRIFT < first)
         };
-        let drifted = |(first, now): (Option<f32>, Option<f32>)| match (first, now) {
-            (Some(first), Some(now)) => now > first * DRIFT || now * DRIFT < first,
-            _ => false,
-        };
-        first.into_iter().zip(now).any(drifted)
+        drifted(first.cost, now.cost) || drifted(first.interval, now.interval)
     }
 }

@@ -5,12 +5,12 @@ use rand_pcg::Pcg64Mcg;
 
 use super::*;
 
-/// A device in virtual time: the GPU's and the CPU's times of both ways, and a display.
+/// A simulated device in virtual time: the GPU's and the CPU's times by [`StereoPath::index`], and a display.
 struct Device {
     chooser: Chooser,
     now_ns: i64,
-    gpu_ms: [f32; 2],
-    cpu_ms: [f32; 2],
+    gpu_ms: [f32; 3],
+    cpu_ms: [f32; 3],
     refresh_hz: f32,
     /// Frames after which the timer's results come; `None` without a timer.
     timer: Option<u32>,
@@ -23,18 +23,28 @@ struct Device {
     random: Pcg64Mcg,
     late: VecDeque<f32>,
     changes: u32,
-    frames: [u32; 2],
+    frames: [u32; 3],
 }
 
 const SIMPLE: [f32; 2] = [8.9, 6.1];
 
+/// Returns the times of two views and synthesis in an array of all ways.
+fn of_two([two_views, synthesis]: [f32; 2]) -> [f32; 3] {
+    [two_views, f32::NAN, synthesis]
+}
+
 impl Device {
+    /// A device that compares two views with synthesis.
     fn new(gpu_ms: [f32; 2], timer: Option<u32>) -> Device {
+        Device::of_aim(Aim::Cheapest, of_two(gpu_ms), timer)
+    }
+
+    fn of_aim(aim: Aim, gpu_ms: [f32; 3], timer: Option<u32>) -> Device {
         Device {
-            chooser: Chooser::new(StereoPath::Synthesis),
+            chooser: Chooser::new(aim, StereoPath::Synthesis),
             now_ns: 5_000_000_000,
             gpu_ms,
-            cpu_ms: [1.0; 2],
+            cpu_ms: [1.0; 3],
             refresh_hz: 60.0,
             timer,
             heat: None,
@@ -44,7 +54,7 @@ impl Device {
             random: Pcg64Mcg::seed_from_u64(7),
             late: VecDeque::new(),
             changes: 0,
-            frames: [0; 2],
+            frames: [0; 3],
         }
     }
 
@@ -102,6 +112,11 @@ impl Device {
     }
 }
 
+/// Returns the compared times, those of the best picture first.
+fn compared(choice: &Choice) -> Vec<f32> {
+    choice.costs_ms.into_iter().flatten().collect()
+}
+
 #[test]
 fn the_cheaper_way_is_chosen_by_late_times_of_a_timer() {
     for (gpu_ms, path) in [(SIMPLE, StereoPath::Synthesis), ([6.1, 8.9], StereoPath::TwoViews)] {
@@ -110,9 +125,9 @@ fn the_cheaper_way_is_chosen_by_late_times_of_a_timer() {
             device.measured_after();
             let choice = device.chooser.choice();
             assert_eq!((choice.path, choice.reason), (path, Reason::Cheaper), "{late} frames late");
-            let costs = choice.costs_ms.unwrap();
+            let costs = compared(&choice);
             assert!(
-                costs.iter().zip(gpu_ms).all(|(a, b)| (a - b).abs() < 1e-3),
+                costs.len() == 2 && costs.iter().zip(gpu_ms).all(|(a, b)| (a - b).abs() < 1e-3),
                 "a time belongs to the frame it was measured in, {late} frames late: {costs:?}"
             );
             let seconds = (device.now_ns - 5_000_000_000) as f64 * 1e-9;
@@ -143,7 +158,7 @@ fn equal_costs_do_not_swing_and_measuring_costs_next_to_nothing() {
     }
     let mut device = Device::new([16.0, 8.0], Some(4));
     device.run(3600.0);
-    let [dear, cheap] = device.frames.map(|n| n as f32);
+    let [dear, _, cheap] = device.frames.map(|n| n as f32);
     assert!(dear / cheap < 0.002, "{dear} frames in the dearer path, {cheap} in the cheaper one");
 }
 
@@ -154,7 +169,7 @@ fn heat_is_a_reason_to_measure_again_but_not_at_once() {
     device.measured_after();
     device.run(10.0);
     // Memory slows down, which synthesis needs most; not by enough to be seen without heat.
-    (device.gpu_ms, device.heat) = ([7.0, 7.9], Some(0.55));
+    (device.gpu_ms, device.heat) = (of_two([7.0, 7.9]), Some(0.55));
     device.run(40.0);
     assert_eq!(device.chooser.choice().path, StereoPath::Synthesis, "hardly warmer");
     device.heat = Some(0.62);
@@ -174,7 +189,7 @@ fn another_cost_of_the_same_way_is_a_reason_to_measure_again() {
     device.measured_after();
     device.run(40.0);
     assert!(!device.chooser.is_measuring());
-    device.gpu_ms = [5.0, 9.0];
+    device.gpu_ms = of_two([5.0, 9.0]);
     let seconds = device.measured_after();
     assert!(seconds < 4.5, "{seconds} s");
     assert_eq!((device.chooser.choice().path, device.changes), (StereoPath::TwoViews, 1));
@@ -185,12 +200,13 @@ fn another_scene_is_measured_at_once_and_without_prejudice() {
     let mut device = Device::new(SIMPLE, Some(4));
     device.measured_after();
     // A difference that would not be worth a change in the same scene.
-    device.gpu_ms = [5.8, 6.1];
+    device.gpu_ms = of_two([5.8, 6.1]);
     device.run(200.0);
     assert_eq!(device.chooser.choice().reason, Reason::Similar);
     device.chooser.scene_changed();
     assert!(device.chooser.is_measuring());
-    let unmeasured = Choice { path: StereoPath::Synthesis, reason: Reason::Unmeasured, costs_ms: None };
+    let unmeasured =
+        Choice { path: StereoPath::Synthesis, reason: Reason::Unmeasured, costs_ms: PathTimes::default() };
     assert_eq!(device.chooser.choice(), unmeasured);
     device.now_ns += 20_000_000_000;
     device.measured_after();
@@ -202,18 +218,18 @@ fn another_scene_is_measured_at_once_and_without_prejudice() {
 fn the_display_hides_what_fits_into_a_refresh() {
     // (GPU's times, chosen path, reason, compared times), without a timer at 60 Hz.
     for (gpu_ms, path, reason, costs_ms) in [
-        ([12.0, 8.0], StereoPath::Synthesis, Reason::BothHoldRate, None),
-        ([8.0, 12.0], StereoPath::Synthesis, Reason::BothHoldRate, None),
-        ([20.0, 12.0], StereoPath::Synthesis, Reason::HoldsRate, Some([33.333, 16.667])),
-        ([12.0, 20.0], StereoPath::TwoViews, Reason::HoldsRate, Some([16.667, 33.333])),
-        ([20.0, 40.0], StereoPath::TwoViews, Reason::Cheaper, Some([33.333, 50.0])),
-        ([20.0, 30.0], StereoPath::Synthesis, Reason::Cheaper, Some([33.333, 33.333])),
+        ([12.0, 8.0], StereoPath::Synthesis, Reason::BothHoldRate, vec![]),
+        ([8.0, 12.0], StereoPath::Synthesis, Reason::BothHoldRate, vec![]),
+        ([20.0, 12.0], StereoPath::Synthesis, Reason::HoldsRate, vec![33.333, 16.667]),
+        ([12.0, 20.0], StereoPath::TwoViews, Reason::HoldsRate, vec![16.667, 33.333]),
+        ([20.0, 40.0], StereoPath::TwoViews, Reason::Cheaper, vec![33.333, 50.0]),
+        ([20.0, 30.0], StereoPath::Synthesis, Reason::Cheaper, vec![33.333, 33.333]),
     ] {
         let mut device = Device::new(gpu_ms, None);
         device.measured_after();
         let choice = device.chooser.choice();
         assert_eq!((choice.path, choice.reason), (path, reason), "{gpu_ms:?}");
-        let rounded = choice.costs_ms.map(|costs| costs.map(|ms| (ms * 1e3).round() / 1e3));
+        let rounded: Vec<f32> = compared(&choice).iter().map(|ms| (ms * 1e3).round() / 1e3).collect();
         assert_eq!(rounded, costs_ms, "{gpu_ms:?}");
     }
     // What does not hold the rate any more is measured again.
@@ -221,7 +237,7 @@ fn the_display_hides_what_fits_into_a_refresh() {
     device.measured_after();
     device.run(100.0);
     assert_eq!(device.chooser.choice().reason, Reason::BothHoldRate);
-    device.gpu_ms = [14.0, 20.0];
+    device.gpu_ms = of_two([14.0, 20.0]);
     assert!(device.measured_after() < 4.5);
     assert_eq!(device.chooser.choice().path, StereoPath::TwoViews);
     // A display of unknown rate sets no pace.
@@ -235,7 +251,7 @@ fn the_display_hides_what_fits_into_a_refresh() {
 fn holding_the_rate_is_worth_more_than_the_gpus_time() {
     // Two views are cheaper for the GPU, but the CPU cannot draw everything twice in time.
     let mut device = Device::new([6.0, 8.0], Some(4));
-    device.cpu_ms = [19.0, 10.0];
+    device.cpu_ms = of_two([19.0, 10.0]);
     device.measured_after();
     let choice = device.chooser.choice();
     assert_eq!((choice.path, choice.reason), (StereoPath::Synthesis, Reason::HoldsRate));
@@ -264,7 +280,8 @@ fn a_pause_begins_the_measurement_again() {
     device.measured_after();
     let seconds = (device.now_ns - begin) as f64 * 1e-9;
     assert!((1.2..1.9).contains(&seconds), "{seconds} s");
-    assert!(device.chooser.choice().costs_ms.unwrap().iter().all(|ms| *ms < 10.0));
+    let costs = compared(&device.chooser.choice());
+    assert!(costs.len() == 2 && costs.iter().all(|ms| *ms < 10.0));
     // A choice outlives a pause.
     device.now_ns += 20_000_000_000;
     device.frame();
@@ -273,7 +290,7 @@ fn a_pause_begins_the_measurement_again() {
 
 #[test]
 fn nonsense_is_no_time() {
-    let mut chooser = Chooser::new(StereoPath::TwoViews);
+    let mut chooser = Chooser::new(Aim::Cheapest, StereoPath::TwoViews);
     for frame in 0..400i64 {
         let ms = [f32::NAN, -1.0, 0.0, f32::INFINITY][frame as usize % 4];
         chooser.end_frame(&FrameEnd {
@@ -286,5 +303,93 @@ fn nonsense_is_no_time() {
     }
     let choice = chooser.choice();
     assert!(!chooser.is_measuring());
-    assert_eq!((choice.path, choice.costs_ms), (StereoPath::TwoViews, Some([11.0, 11.0])));
+    assert_eq!((choice.path, compared(&choice)), (StereoPath::TwoViews, vec![11.0; 2]));
+}
+
+/// A device of 60 Hz that takes the best of all three ways.
+fn best(gpu_ms: [f32; 3], timer: Option<u32>) -> Device {
+    Device::of_aim(Aim::BestThatHolds, gpu_ms, timer)
+}
+
+#[test]
+fn the_best_picture_that_holds_the_rate_is_chosen() {
+    use StereoPath::{RenderedHoles, Synthesis, TwoViews};
+    let timer = Some(4);
+    for (gpu_ms, timer, path, reason) in [
+        ([12.0, 9.0, 8.0], timer, TwoViews, Reason::HoldsRate),
+        ([12.0, 9.0, 8.0], None, TwoViews, Reason::HoldsRate),
+        // Without room, a frame that takes longer is late.
+        ([15.0, 12.0, 10.0], timer, RenderedHoles, Reason::HoldsRate),
+        ([20.0, 12.0, 10.0], None, RenderedHoles, Reason::HoldsRate),
+        ([20.0, 18.0, 12.0], timer, Synthesis, Reason::HoldsRate),
+        ([20.0, 18.0, 12.0], None, Synthesis, Reason::HoldsRate),
+        // Two views are the cheapest and have room, whatever synthesis costs.
+        ([6.0, 12.0, 10.0], timer, TwoViews, Reason::HoldsRate),
+        // None holds.
+        ([40.0, 30.0, 20.0], timer, Synthesis, Reason::Cheaper),
+        ([19.0, 30.0, 20.0], timer, TwoViews, Reason::Cheaper),
+        ([60.0, 45.0, 30.0], None, Synthesis, Reason::Cheaper),
+    ] {
+        let mut device = best(gpu_ms, timer);
+        device.measured_after();
+        let choice = device.chooser.choice();
+        assert_eq!((choice.path, choice.reason), (path, reason), "{gpu_ms:?}, timer {timer:?}");
+        assert_eq!(compared(&choice).len(), 3);
+    }
+    // The CPU cannot draw everything twice in time, and no way leaves the GPU room.
+    let mut device = best([14.0, 15.9, 15.0], Some(4));
+    device.cpu_ms = [19.0, 10.0, 10.0];
+    device.measured_after();
+    assert_eq!(device.chooser.choice().path, Synthesis);
+    // Of an unknown rate, the cheapest.
+    let mut device = best([12.0, 9.0, 8.0], Some(4));
+    device.refresh_hz = 0.0;
+    device.measured_after();
+    assert_eq!((device.chooser.choice().path, device.chooser.choice().reason), (Synthesis, Reason::Cheaper));
+}
+
+#[test]
+fn costs_near_the_limit_do_not_flip() {
+    // Around 80 and 90 % of a refresh, and around a whole one.
+    for at in [13.33, 15.0, 16.67] {
+        for (seed, timer) in (0..3).flat_map(|seed| [(seed, Some(4)), (seed, None)]) {
+            let mut device = best([at, at * 0.9, 6.0], timer).noisy(0.05, 0.02, seed);
+            let mut last = None;
+            let end = device.now_ns + 1_800_000_000_000;
+            while device.now_ns < end {
+                let changes = device.changes;
+                device.frame();
+                if device.changes > changes {
+                    let since = last.replace(device.now_ns).map_or(i64::MAX, |last| device.now_ns - last);
+                    assert!(since > 5_000_000_000, "{at} ms: after {since} ns");
+                }
+            }
+            assert!(device.changes <= 8, "{at} ms, seed {seed}, {timer:?}: {} changes", device.changes);
+        }
+    }
+}
+
+#[test]
+fn a_way_that_no_longer_holds_the_rate_is_left_within_seconds() {
+    for timer in [Some(4), None] {
+        let mut device = best([12.0, 9.0, 8.0], timer);
+        device.measured_after();
+        device.run(20.0);
+        assert_eq!((device.chooser.choice().path, device.changes), (StereoPath::TwoViews, 1));
+        device.gpu_ms = [18.0, 13.0, 11.0];
+        let seconds = device.measured_after();
+        assert!(seconds < 4.5, "{seconds} s");
+        assert_eq!(device.chooser.choice().path, StereoPath::RenderedHoles, "{timer:?}");
+        // It becomes cheap again: the better way is taken after a rest.
+        device.gpu_ms = [12.0, 9.0, 8.0];
+        let rest = device.measured_after();
+        assert!((29.0..601.0).contains(&rest), "{rest} s");
+        assert_eq!((device.chooser.choice().path, device.changes), (StereoPath::TwoViews, 3));
+    }
+    // What is the best of all is not measured again in vain.
+    let mut device = best([8.0, 9.0, 10.0], Some(4));
+    device.measured_after();
+    device.run(590.0);
+    let [two_views, rendered, filled] = device.frames;
+    assert!(two_views > 500 * (rendered + filled) / 2, "{:?}", device.frames);
 }

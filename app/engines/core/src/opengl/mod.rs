@@ -218,9 +218,21 @@ fn draw_open(gl: &Context, target: &Destination, outputs: Outputs, HoleMarks { m
     gl.set_depth_write(false);
 }
 
-/// Declares what [`draw_target`] writes.
+/// Declares what [`draw_target`] and [`draw_open`] write.
 fn target_images(target: &Destination, outputs: Outputs) -> impl Iterator<Item = Image> {
-    let depth = outputs.depth.then(|| target.image(Format::Depth32F));
+    let depth = outputs.depth.then(|| target.image(depth_format(outputs.holes)));
     let map = outputs.source_map.then(|| target.image(Format::R32Ui));
     [Some(target.image(Format::Rgba8)), map, depth].into_iter().flatten()
+}
+
+/// Declares the marks of [`draw_open`] where depth is no output: whoever draws in open pixels reads them in the same tiles.
+fn mark_image(target: &Destination, Outputs { depth, holes, .. }: Outputs) -> Option<Image> {
+    (holes.is_open() && !depth).then(|| target.image(depth_format(holes)))
+}
+
+fn depth_format(holes: Holes) -> Format {
+    match holes {
+        Holes::Open(HoleMark::Stencil) => Format::Depth32FStencil8,
+        Holes::Open(HoleMark::Depth) | Holes::Filled => Format::Depth32F,
+    }
 }

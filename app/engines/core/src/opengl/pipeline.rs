@@ -7,7 +7,7 @@ use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Image, Program, RenderTarget, ShaderSource, Touched,
 };
 
-use super::{Bloom, GlState, Options, Outputs, Source, draw_open, draw_target, target_images};
+use super::{Bloom, GlState, Options, Outputs, Source, draw_open, draw_target, mark_image, target_images};
 use crate::eyes::{MotionWarp, PoseWarp, Warp};
 use crate::synthesis::backend::{PerKind, UniformBlock as _, WarpKind, map_sizes};
 use crate::synthesis::{HoleMark, Holes};
@@ -252,7 +252,8 @@ impl<W: WarpKind> Pipeline<W> {
             // Its size is not known here; a blurred image needs no more than half the pixels along each axis.
             march = march.read("bloom", Image { size: color.size.map(|n| n.div_ceil(2)), ..color });
         }
-        march.write(target_images(target, self.outputs)).run(|| {
+        march = march.write(target_images(target, self.outputs));
+        march.in_tile(mark_image(target, self.outputs)).run(|| {
             begin(&self.march);
             self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
             self.march.texture("span_map", 3, self.span_map.color(0).raw());

@@ -109,6 +109,11 @@ pub fn held<'a>(
     Ok(Held { content, image: content.image(image, part.image_array_index) })
 }
 
+/// True if xrCreateSwapchain has made the swapchain of a view, rather than a function of an extension.
+pub fn is_known(swapchains: &[Arc<Swapchain>], view: &sys::CompositionLayerProjectionView) -> bool {
+    swapchains.iter().any(|swapchain| swapchain.handle == view.sub_image.swapchain)
+}
+
 /// True if a view that the layer replaces has a pose, and an image within a swapchain. Otherwise the runtime must see it.
 pub fn is_sound(swapchains: &[Arc<Swapchain>], view: &sys::CompositionLayerProjectionView) -> bool {
     let known = swapchains.iter().find(|swapchain| swapchain.handle == view.sub_image.swapchain);

@@ -38,8 +38,8 @@ use statistics::{Report, Statistics};
 pub struct Frames {
     /// One for each rendered view, in the order of the views.
     views: [RenderedView; 2],
-    /// The kinds of reasons that have been logged.
-    logged: HashSet<Discriminant<Reason>>,
+    /// The kinds of reasons that have been logged, and what they were reasons for.
+    logged: HashSet<(&'static str, Discriminant<Reason>)>,
     statistics: Statistics,
     report: Report,
 }
@@ -75,8 +75,12 @@ pub unsafe fn end_frame(
     // SAFETY: the application's structure.
     let layers = unsafe { chain::layers(info) };
     // SAFETY: the application's layers.
-    if views > 1 && !unsafe { replaces_sound_views(session, swapchains, layers) } {
+    let unsound = if views > 1 { unsafe { unsound_view(session, swapchains, layers) } } else { None };
+    if let Some(view) = unsound {
         views = 0;
+        if !chain::is_known(swapchains, view) {
+            lock(frames).log_once(session, "passed through", &Reason::Unknown("the view to replace"));
+        }
     }
     // The runtime has begun the session with two views, so it would accept layers of two views, which the application
     // must not submit.
@@ -162,14 +166,18 @@ unsafe fn same<'a>(
     views.map(|view| unsafe { Eyes::same(view, session.instance.takes_depth) }).collect()
 }
 
-/// True if all views that are to be replaced could be shown.
+/// Returns the first view that is to be replaced and could not be shown.
 ///
 /// # Safety
 /// The layers are those of a call of xrEndFrame in a session of more than one view.
-unsafe fn replaces_sound_views(session: &Session, swapchains: &[Arc<Swapchain>], layers: Layers) -> bool {
+unsafe fn unsound_view<'a>(
+    session: &Session,
+    swapchains: &[Arc<Swapchain>],
+    layers: Layers<'a>,
+) -> Option<&'a sys::CompositionLayerProjectionView> {
     // SAFETY: same contract.
     let replaced = unsafe { views_of(session, layers, session.instance.settings.dominant.other()) };
-    replaced.into_iter().flat_map(|(_, views)| views).all(|view| chain::is_sound(swapchains, view))
+    replaced.into_iter().flat_map(|(_, views)| views).find(|view| !chain::is_sound(swapchains, view))
 }
 
 /// Returns the layers to rewrite. Each comes with its one view, or with those of its views that are not tiny.
@@ -308,11 +316,13 @@ impl Frames {
     /// Counts a layer that is shown unchanged to both eyes, and logs each kind of reason once.
     fn log_fallback(&mut self, session: &Session, reason: Reason) {
         self.statistics.fallbacks += 1;
-        if self.logged.insert(std::mem::discriminant(&reason)) {
-            log_line(format_args!(
-                "{}: the same image for both eyes: {reason}",
-                session.instance.application
-            ));
+        self.log_once(session, "the same image for both eyes", &reason);
+    }
+
+    /// Logs what becomes of a frame, once for each kind of reason.
+    fn log_once(&mut self, session: &Session, what: &'static str, reason: &Reason) {
+        if self.logged.insert((what, std::mem::discriminant(reason))) {
+            log_line(format_args!("{}: {what}: {reason}", session.instance.application));
         }
     }
 

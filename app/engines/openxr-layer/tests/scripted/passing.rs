@@ -8,7 +8,7 @@ use yoro_openxr_stub::script::{At, Event, Script, What};
 use crate::checks::{assert_own_eyes, assert_seen, psnr, truth};
 use crate::client::{Client, DEPTH, Failure, Layer};
 use crate::habits::{
-    Chains, Habits, begin_rendered, begin_session, frames, learn_size, render, run, with_session,
+    Chains, Habits, begin_rendered, begin_session, frames, learn_size, render, run, run_shrunk, with_session,
 };
 use crate::world::{faulty, script, watched, with_gpu};
 
@@ -139,6 +139,32 @@ fn calls_with_unknown_swapchains_reach_the_runtime() {
             client.destroy_session().unwrap();
         });
         assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+    });
+}
+
+/// With `shrink`, the layer cannot tell whether such an image could be shown, so the runtime gets the application's views.
+#[test]
+fn a_view_to_replace_in_an_unknown_swapchain_reaches_the_runtime() {
+    with_gpu(|gpu| {
+        let habits = Habits { name: "shrink", ..Habits::PLAIN };
+        let seen = watched(script(), || {
+            run_shrunk(gpu, &habits, 2, |client, begun, [mut tiny, own]| {
+                let unknown = client.chain_below_the_layer()?;
+                client.acquire(&unknown)?;
+                client.release(&unknown)?;
+                tiny.color.chain = unknown.handle;
+                client.end_frame(begun, &[Layer::Projection(vec![tiny, own])])
+            })
+            .unwrap();
+        });
+        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
+        assert_eq!((seen.frames().len(), seen.counts().len()), (2, 0), "{}", seen.layer_log);
+        assert_eq!(
+            seen.count_in_log("passed through: the view to replace is in no"),
+            1,
+            "{}",
+            seen.layer_log
+        );
     });
 }
 

@@ -3,12 +3,12 @@
 use image::RgbImage;
 
 use super::contender::Contender;
-use super::holes::HoleFinder;
+use super::holes::{HoleFinder, OpenPixels};
 use super::job::Job;
 use super::process;
 use super::record::{Measurement, Record, metric};
 use super::runner::{Round, Runner, eye_image, left_out, milliseconds};
-use super::subject::Subject;
+use super::subject::{PassCosts, Subject};
 use super::views::Views;
 use yoro_files::interrupt;
 use yoro_metrics::Comparison;
@@ -193,12 +193,20 @@ impl Field {
         round: &mut Round,
     ) -> anyhow::Result<()> {
         let mut finder = HoleFinder::new(runner.gl)?;
+        let opens = |entry: &&Entry| entry.contender == Contender::RenderedHoles;
+        let mut open = match self.entries.iter().find(opens) {
+            Some(entry) => Some((OpenPixels::new(runner.gl)?, entry)),
+            None => None,
+        };
         for (i, pair) in views.pairs.iter().enumerate() {
             let holes = finder.find(scene, pair)?;
             for (entry, images_of) in self.entries.iter().zip(images).skip(1) {
                 interrupt::check()?;
                 let comparison = Comparison::of(&images_of[i], &images[0][i], Some(&holes))?;
                 round.of(&entry.name).push_comparison(&comparison);
+            }
+            if let Some((pixels, entry)) = &mut open {
+                round.of(&entry.name).push(metric::OPEN_SHARE, pixels.share(scene, pair)?);
             }
         }
         Ok(())
@@ -213,8 +221,10 @@ impl Field {
     ) -> anyhow::Result<()> {
         for entry in &mut self.entries {
             interrupt::check()?;
-            let passes = entry.subject.pass_times(scene, &views.pairs[0], &mut self.frame)?;
+            let PassCosts { times: passes, draw_calls } =
+                entry.subject.pass_costs(scene, &views.pairs[0], &mut self.frame)?;
             let measurement: &mut Measurement = round.of(&entry.name);
+            measurement.push(metric::DRAW_CALLS, f64::from(draw_calls));
             if runner.gl.capabilities().timer_queries && !passes.is_empty() {
                 measurement.push(metric::GPU_MS, passes.iter().map(|(_, ms)| ms).sum());
             }

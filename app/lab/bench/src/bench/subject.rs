@@ -1,11 +1,12 @@
 //! The two eyes of a frame: the one place through which experiments render them.
 
+use std::cell::Cell;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use super::process;
 use yoro::eyes::{EyePair, EyesError, FoveationLevel, Gaze, StereoViews};
-use yoro_gl::{Context, GlError, Profiling};
+use yoro_gl::{Context, Draw, GlError, Observer, Profiling};
 use yoro_render::stereo::{
     EyeTarget, FrameReport, FrameTargets, HoleMethod, Method, StereoError, StereoFrame, StereoOptions,
     StereoSession,
@@ -18,6 +19,24 @@ pub struct Subject {
     session: StereoSession,
     options: StereoOptions,
     foveation: FoveationLevel,
+}
+
+/// What the passes of one frame took.
+pub struct PassCosts {
+    /// The passes' names in the order of their first run, and milliseconds. The runs of a pass within a frame are added up.
+    /// Empty if the driver cannot measure passes ([`Context::take_pass_times`]).
+    pub times: Vec<(&'static str, f64)>,
+    /// The number of draw calls of all passes, without copies and clears.
+    pub draw_calls: u32,
+}
+
+/// Counts draw calls.
+struct DrawCounter(Rc<Cell<u32>>);
+
+impl Observer for DrawCounter {
+    fn draw_begins(&mut self, _gl: &Context, _draw: &Draw) {
+        self.0.set(self.0.get() + 1);
+    }
 }
 
 /// The time that one frame took.
@@ -124,22 +143,23 @@ impl Subject {
         Ok(())
     }
 
-    /// Renders a frame after settling, with a timer around each pass. Returns the passes' names in the order of their
-    /// first run, and milliseconds. The runs of a pass within a frame are added up. Empty if the driver cannot measure
-    /// passes ([`Context::take_pass_times`]).
+    /// Renders a frame after settling, with a timer around each pass.
     ///
     /// # Errors
     /// As [`Subject::render_to`].
-    pub fn pass_times(
+    pub fn pass_costs(
         &mut self,
         scene: &mut PreparedScene,
         pair: &EyePair,
         frame: &mut StereoFrame,
-    ) -> Result<Vec<(&'static str, f64)>, StereoError> {
+    ) -> Result<PassCosts, StereoError> {
         self.settle(scene, pair, frame)?;
+        let draw_calls = Rc::new(Cell::new(0));
+        self.gl.set_observer(Some(Box::new(DrawCounter(draw_calls.clone()))));
         self.gl.set_profiling(Profiling::Auto);
         let rendered = self.render(scene, pair, frame);
         let passes = self.gl.take_pass_times();
+        self.gl.set_observer(None);
         self.gl.set_profiling(Profiling::Off);
         rendered?;
         let mut times: Vec<(&'static str, f64)> = Vec::new();
@@ -150,7 +170,7 @@ impl Subject {
                 None => times.push((pass.name, milliseconds)),
             }
         }
-        Ok(times)
+        Ok(PassCosts { times, draw_calls: draw_calls.get() })
     }
 
     /// Returns what is rendered of a pair of eyes.

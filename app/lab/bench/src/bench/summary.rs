@@ -10,11 +10,13 @@ use yoro_report::stats::{self, median, unique};
 /// A column: heading, metric, number of decimals, and the function that combines its values.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
 
-const COLUMNS: [Column; 10] = [
+const COLUMNS: [Column; 12] = [
     ("frame ms", metric::FRAME_MS, 1, median),
     ("CPU ms", metric::CPU_MS, 1, median),
     ("GPU ms", metric::GPU_MS, 2, median),
     ("patch ms", metric::PATCH_MS, 2, median),
+    ("draws", metric::DRAW_CALLS, 0, median),
+    ("open", metric::OPEN_SHARE, 4, mean),
     ("PSNR", metric::PSNR, 2, mean),
     ("SSIM", metric::SSIM, 4, mean),
     ("FLIP", metric::FLIP, 4, mean),

@@ -218,11 +218,12 @@ pub(super) fn means_table(
 
 /// Returns a table of all figures of quality, with a row for each setting and contender and a column for each metric.
 pub(super) fn metric_table(suite: &SuiteData, title: &str, contenders: &[&str]) -> Table {
-    const COLUMNS: [MetricColumn; 9] = [
+    const COLUMNS: [MetricColumn; 10] = [
         ("PSNR, dB", metric::PSNR, 2),
         ("SSIM", metric::SSIM, 4),
         ("SSIM 7x7", metric::SSIM_UNIFORM, 4),
         ("FLIP", metric::FLIP, 4),
+        ("open: share, %", metric::OPEN_SHARE, 2),
         ("holes: share, %", metric::HOLE_SHARE, 2),
         ("holes: PSNR, dB", metric::HOLE_PSNR, 2),
         ("holes: SSIM", metric::HOLE_SSIM, 4),
@@ -237,7 +238,8 @@ pub(super) fn metric_table(suite: &SuiteData, title: &str, contenders: &[&str]) 
             let Some(of) = setting.find(name) else { continue };
             let mut cells = vec![Cell::plain(setting.label()), Cell::plain(*name)];
             for (_, metric, decimals) in &measured {
-                let scale = if *metric == metric::HOLE_SHARE { 100.0 } else { 1.0 };
+                let is_share = [metric::HOLE_SHARE, metric::OPEN_SHARE].contains(metric);
+                let scale = if is_share { 100.0 } else { 1.0 };
                 cells.push(cell(name, fixed(of.mean(metric).map(|value| value * scale), *decimals)));
             }
             table.push(cells);

@@ -1,13 +1,14 @@
-//! Motion vectors of both eyes: those that are synthesized against those of two renders; and what half the rate compiles.
+//! Motion vectors of both eyes: those that are synthesized against those of two renders; and what frames compile.
 
 use std::cell::Cell;
 
 use glam::{Quat, Vec3};
 
-use super::tests::{Rig, local, moving_scene, pair, session_of};
+use super::tests::{Rig, local, moving_scene, pair, scene, session_of};
 use super::*;
 use crate::view::{DepthResolve, RenderSettings};
-use yoro::eyes::{DepthConvention, Eye, EyePair, Ndc, Pose};
+use yoro::eyes::{DepthConvention, Eye, EyePair, Foveation, Gaze, Ndc, Pose};
+use yoro_assets::Alpha;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Capabilities, Destination, Filter, Format, Observer, ProgramRecipe, RenderTarget};
 
@@ -151,7 +152,7 @@ fn frames_of_half_the_rate_compile_and_allocate_nothing() {
             let what = format!("{way:?}, {method:?}, {holes:?}");
             let options = StereoOptions { motion_vectors: true, holes, ..StereoOptions::default() };
             let mut subject = session_of(gl, method, &settings, &options);
-            subject.prepare(rig.scene()).unwrap();
+            subject.prepare(rig.scene(), false).unwrap();
             let made = Rc::new(Cell::new(0));
             gl.set_observer(Some(Box::new(Counted(made.clone()))));
             let mut held = None;
@@ -168,4 +169,34 @@ fn frames_of_half_the_rate_compile_and_allocate_nothing() {
         }
         assert_eq!(gl.take_errors(), None);
     }
+}
+
+/// Neither do frames with an inset, around which the wide layer has depth.
+#[test]
+fn prepared_frames_with_an_inset_compile_nothing() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let (gl, settings) = (head.gl(), RenderSettings { msaa: 4, ..local() });
+    let mut opaque = scene();
+    opaque.model.materials.iter_mut().for_each(|material| material.alpha = Alpha::Opaque);
+    let eyes = pair(Eye::Right, DepthConvention::Reversed);
+    let foveation = Foveation { radius: 0.2, ..Foveation::MEDIUM };
+    let views = eyes.stereo_views(Some(&foveation), Gaze::Axes(eyes.axes())).unwrap();
+    // The images have passes of their own, which they keep.
+    let mut images = StereoImages::new(gl).unwrap();
+    let choices = [Method::Synthesized.into(), Method::Conventional.into(), MethodChoice::Auto];
+    for (choice, holes) in choices.into_iter().flat_map(|c| HoleMethod::ALL.map(|holes| (c, holes))) {
+        let mut rig = Rig::of(gl, &settings, opaque.clone());
+        let options = StereoOptions { holes, ..StereoOptions::default() };
+        let mut session = StereoSession::new(gl, choice, &settings, &options).unwrap();
+        session.prepare(rig.scene(), true).unwrap();
+        let made = Rc::new(Cell::new(0));
+        images.fit(&views, true).unwrap();
+        gl.set_observer(Some(Box::new(Counted(made.clone()))));
+        for _ in 0..2 {
+            rig.frame(&mut session, &views, FrameTargets::Images(&mut images));
+        }
+        gl.set_observer(None);
+        assert_eq!(made.get(), 0, "{choice:?}, {holes:?}");
+    }
+    assert_eq!(gl.take_errors(), None);
 }

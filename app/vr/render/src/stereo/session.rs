@@ -7,7 +7,7 @@ use super::fallback::{Fallback, FallbackReason, NearSwitch};
 use super::frame::Frame;
 use super::images::{LayerTargets, StereoImages};
 use super::method::{EyeTarget, StereoError, StereoMethod};
-use super::options::{Method, MethodChoice, StereoOptions};
+use super::options::{HoleMethod, Method, MethodChoice, StereoOptions};
 use super::rate::RateChooser;
 use crate::prepared::PreparedScene;
 use crate::view::RenderSettings;
@@ -88,9 +88,9 @@ struct Plan {
     counts: bool,
 }
 
-/// A method, named or the cheaper of two, and two renders in its place for eyes that it cannot use.
+/// A method, named or chosen by its cost, and two renders in its place for eyes that it cannot use.
 ///
-/// While sizes stay, frames allocate and compile nothing; the first frame with an inset makes what insets need.
+/// While sizes stay, frames allocate and compile nothing, once the session is prepared.
 pub struct StereoSession {
     gl: Rc<Context>,
     options: StereoOptions,
@@ -109,7 +109,7 @@ pub struct StereoSession {
 }
 
 impl StereoSession {
-    /// Makes the method, or both of [`MethodChoice::Auto`], without what depends on a scene.
+    /// Makes the method, or all of [`MethodChoice::Auto`], without what depends on a scene.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver cannot run the method.
@@ -129,7 +129,7 @@ impl StereoSession {
             method,
             chosen: LayerMethods::new(gl, method, options)?,
             both: None,
-            auto: is_auto.then(|| Auto::new(gl)),
+            auto: is_auto.then(|| Auto::new(gl, options.holes)),
             fallback: Fallback::new(gl, method, options)?,
             is_comparing: false,
             rate: RateChooser::default(),
@@ -141,7 +141,7 @@ impl StereoSession {
         Ok(session)
     }
 
-    /// Returns the method; of [`MethodChoice::Auto`], the one chosen last. While a choice is being made, the two take turns.
+    /// Returns the method; of [`MethodChoice::Auto`], the one chosen last. While a choice is being made, they take turns.
     pub fn method(&self) -> Method {
         match self.auto.as_ref().map(|auto| auto.choice().path) {
             Some(StereoPath::TwoViews) => Method::Conventional,
@@ -149,7 +149,7 @@ impl StereoSession {
         }
     }
 
-    /// Returns the choice between two methods, if there is one.
+    /// Returns the choice between methods, if there is one.
     pub fn auto(&self) -> Option<&Auto> {
         self.auto.as_ref()
     }
@@ -164,14 +164,16 @@ impl StereoSession {
             }
     }
 
-    /// Compiles what a scene's materials need, so that its first frame need not.
+    /// Compiles what a scene's materials need, so that its first frame need not; with `has_inset`, also for frames that have an
+    /// inset.
     ///
     /// # Errors
     /// [`StereoError::Gl`] if the driver refuses.
-    pub fn prepare(&mut self, scene: &mut PreparedScene) -> Result<(), StereoError> {
+    pub fn prepare(&mut self, scene: &mut PreparedScene, has_inset: bool) -> Result<(), StereoError> {
         self.fallback.prepare(&scene.renderer)?;
         let both = self.both.as_mut().filter(|_| self.auto.is_some());
-        [Some(&mut self.chosen), both].into_iter().flatten().try_for_each(|methods| methods.prepare(scene))
+        let mut all = [Some(&mut self.chosen), both].into_iter().flatten();
+        all.try_for_each(|methods| methods.prepare(scene, has_inset))
     }
 
     /// Makes two renders ready, so that the first frame of a comparison need not.
@@ -216,7 +218,7 @@ impl StereoSession {
             self.take_load(load);
         }
         let Plan { path, fallback, counts } = self.plan(views, scene)?;
-        let is_synthesized = path == StereoPath::Synthesis && self.method == Method::Synthesized;
+        let is_synthesized = path != StereoPath::TwoViews && self.method == Method::Synthesized;
         // Eyes with an inset are composed of images of this session.
         let mut own = match &targets {
             FrameTargets::Eyes(_) if views.inset.is_some() => Some(self.take_images()?),
@@ -231,15 +233,19 @@ impl StereoSession {
                 self.layers_of(images.fit(views, is_synthesized)?, views, to)
             }
         };
-        if self.auto.as_mut().is_some_and(|auto| counts && auto.take_new()) {
-            // Makes everything that the other method needs now, while the scene comes into view, rather than in its first
-            // turn.
-            self.methods(path.other())?.0.render(scene, views, &to, None)?;
+        if let Some(auto) = self.auto.as_mut().filter(|_| counts)
+            && auto.take_new()
+        {
+            // Makes everything that the other ways need now, while the scene comes into view, rather than in their first
+            // turns.
+            for other in auto.paths().iter().filter(|other| **other != path) {
+                self.methods(*other)?.0.render(scene, views, &to, (*other, None))?;
+            }
         }
         let begin = self.auto.as_ref().filter(|_| counts).and_then(|auto| auto.begin(&to));
         let (methods, near) = self.methods(path)?;
-        let near = near.filter(|_| path == StereoPath::Synthesis || fallback == Some(FallbackReason::Near));
-        let has_motion = methods.render(scene, views, &to, near)?;
+        let near = near.filter(|_| path != StereoPath::TwoViews || fallback == Some(FallbackReason::Near));
+        let has_motion = methods.render(scene, views, &to, (path, near))?;
         if let Some(auto) = &mut self.auto {
             auto.end((counts && fallback.is_none()).then_some(path), begin, &to);
         }
@@ -259,7 +265,7 @@ impl StereoSession {
         if fallback.is_some() || self.is_comparing && self.method != Method::Conventional {
             return Ok(Plan { path: StereoPath::TwoViews, fallback, counts: false });
         }
-        let path = self.auto.as_ref().map_or(StereoPath::Synthesis, Auto::path);
+        let path = self.auto.as_ref().map_or_else(|| self.named_path(), Auto::path);
         if path == StereoPath::TwoViews {
             return Ok(Plan { path, fallback: None, counts: true });
         }
@@ -267,6 +273,14 @@ impl StereoSession {
         let fallback = self.fallback.of_content();
         let path = if fallback.is_some() { StereoPath::TwoViews } else { path };
         Ok(Plan { path, fallback, counts: true })
+    }
+
+    /// Returns the path of the named method.
+    fn named_path(&self) -> StereoPath {
+        match self.options.holes {
+            HoleMethod::Filled => StereoPath::Synthesis,
+            HoleMethod::Rendered => StereoPath::RenderedHoles,
+        }
     }
 
     /// Returns the methods of a path, and what measures the dominant eye's depth for later frames.
@@ -330,7 +344,7 @@ struct LayerMethods {
     method: Method,
     options: StereoOptions,
     wide: Box<dyn StereoMethod>,
-    /// Made for the first frame with an inset.
+    /// Made when first needed.
     inset: Option<Box<dyn StereoMethod>>,
 }
 
@@ -340,38 +354,46 @@ impl LayerMethods {
         Ok(LayerMethods { gl: gl.clone(), method, options: *options, wide, inset: None })
     }
 
-    fn prepare(&mut self, PreparedScene { renderer, scene }: &mut PreparedScene) -> Result<(), StereoError> {
-        let methods = [Some(&mut self.wide), self.inset.as_mut()];
-        methods.into_iter().flatten().try_for_each(|method| method.prepare(renderer, scene))
+    fn prepare(&mut self, scene: &mut PreparedScene, has_inset: bool) -> Result<(), StereoError> {
+        let PreparedScene { renderer, scene } = scene;
+        self.wide.prepare(renderer, scene)?;
+        if has_inset { self.inset()?.prepare(renderer, scene) } else { Ok(()) }
     }
 
-    /// Renders all layers of a frame. `near` measures the depth of the wide one. Returns true if its motion vectors were
-    /// written.
+    /// Returns the inset's method, made on the first call.
+    fn inset(&mut self) -> Result<&mut dyn StereoMethod, GlError> {
+        let inset = match self.inset.take() {
+            Some(inset) => inset,
+            // A runtime gets motion vectors of the wide layer alone.
+            None => {
+                let options = StereoOptions { motion_vectors: false, ..self.options };
+                super::create(&self.gl, self.method, &options)?
+            }
+        };
+        Ok(self.inset.insert(inset).as_mut())
+    }
+
+    /// Renders all layers of a frame along a path. `near` measures the depth of the wide one. Returns true if its motion
+    /// vectors were written.
     fn render(
         &mut self,
         scene: &mut PreparedScene,
         views: &StereoViews,
         to: &LayerTargets,
-        near: Option<&mut NearSwitch>,
+        (path, near): (StereoPath, Option<&mut NearSwitch>),
     ) -> Result<bool, StereoError> {
         let shown = views.inset.map(|_| &views.shown);
-        let mut render = |method: &mut Box<dyn StereoMethod>, layer, to, near, fills_holes| {
+        let fills = path == StereoPath::Synthesis;
+        let mut render = |method: &mut dyn StereoMethod, layer, to, near, fills_holes| {
             method.prepare(&mut scene.renderer, &scene.scene)?;
             let frame = Frame::new(&scene.renderer, &scene.scene, layer, shown, to)?;
             method.render(&frame.measured_by(near).with_filled_holes(fills_holes))
         };
         // Where an inset is seen best, the layer around it is seen worst.
-        let has_motion = render(&mut self.wide, &views.wide, &to.wide, near, views.inset.is_some())?;
+        let wide_fills = fills || views.inset.is_some();
+        let has_motion = render(self.wide.as_mut(), &views.wide, &to.wide, near, wide_fills)?;
         if let Some((layer, to)) = views.inset.as_ref().zip(to.inset.as_ref()) {
-            let inset = match self.inset.take() {
-                Some(inset) => inset,
-                // A runtime gets motion vectors of the wide layer alone.
-                None => {
-                    let options = StereoOptions { motion_vectors: false, ..self.options };
-                    super::create(&self.gl, self.method, &options)?
-                }
-            };
-            render(self.inset.insert(inset), layer, to, None, false)?;
+            render(self.inset()?, layer, to, None, fills)?;
         }
         Ok(has_motion)
     }

@@ -127,9 +127,9 @@ impl StereoMethod for Synthesized {
         if self.motion.is_none() && self.options.motion_vectors {
             self.motion = Some(SynthesizedMotion::new(&self.gl, pairs)?);
         }
-        let has_over = scene.has_transparent();
-        let kinds = [(Kind::Color, true), (Kind::ColorDepth, has_over), (Kind::OpenHoles, renders_holes)];
-        for (kind, _) in kinds.into_iter().filter(|(_, is_needed)| *is_needed) {
+        // Depth is wanted of some frames: behind transparent surfaces, by displays, and around insets.
+        let open = renders_holes.then_some(Kind::OpenHoles);
+        for kind in [Kind::Color, Kind::ColorDepth].into_iter().chain(open) {
             made.synthesizers.get(kind)?;
         }
         Ok(())

@@ -168,7 +168,8 @@ impl InkedHoles {
 
     /// Tells holes from the rest by alpha, which a shader can read, once an eye is synthesized into `to`.
     pub(crate) fn mark(&self, to: &Destination) {
-        self.gl.pass("mark").run(|| {
+        let image = |format| Image { samples: self.samples, ..to.image(format) };
+        self.gl.pass("mark").load([Format::Rgba8, MARKED_DEPTH].map(image)).run(|| {
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
             self.fill.bind();
             for (stencil, alpha) in [(0, 0.0f32), (1, 1.0)] {

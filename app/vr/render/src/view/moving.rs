@@ -142,7 +142,7 @@ impl Moving {
         let mut jumps = self.jumps.borrow_mut();
         self.motion.find_jumps(times, &mut jumps);
         let farthest = (HIGHEST_SPEED * (times[1] - times[0]).abs()) as f32;
-        let mut first = 0;
+        let (mut first, mut is_renewed) = (0, false);
         for (mesh, jumps) in self.motion.meshes.iter().zip(&jumps.meshes) {
             let vertices = first..first + mesh.vertices.len();
             first = vertices.end;
@@ -151,6 +151,9 @@ impl Moving {
                 now.position.distance_squared(then.position) > farthest * farthest
             };
             if *jumps || now.iter().zip(&self.previous[vertices.clone()]).any(is_fast) {
+                if !std::mem::replace(&mut is_renewed, true) {
+                    self.mesh.renew_previous(&self.previous);
+                }
                 self.mesh.rewrite_previous(vertices.start, now);
             }
         }

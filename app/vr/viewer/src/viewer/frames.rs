@@ -186,7 +186,7 @@ impl Viewer {
         })
     }
 
-    /// Lets the controller judge a frame with the setting `adaptive`, except while two methods are being measured, since both
+    /// Lets the controller judge a frame with the setting `adaptive`, except while methods are being measured, since all
     /// have to have the same size. A change of the ImBuffer compiles the method again; the controller keeps this rare.
     fn adapt(&mut self, load: &FrameLoad) -> Result<(), ViewerError> {
         if !self.settings.adaptive {

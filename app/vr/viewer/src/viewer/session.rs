@@ -16,7 +16,7 @@ pub(super) struct MethodInUse {
     pub pipeline: Pipeline,
     /// True if the display's runtime makes frames between those that are rendered.
     pub runtime_makes_frames: bool,
-    /// True if both methods of [`MethodChoice::Auto`] were rendered in this second.
+    /// True if all methods of [`MethodChoice::Auto`] were rendered in this second.
     pub is_mixed: bool,
     /// The reason that was logged last for rendering both eyes instead of using the method, while it holds.
     pub fallback: Option<FallbackReason>,
@@ -67,7 +67,7 @@ impl Viewer {
         self.session.as_ref().map_or(self.method.choice.first(), StereoSession::method)
     }
 
-    /// Returns the automatic choice between two methods, if the settings ask for it and the methods are compiled.
+    /// Returns the automatic choice between methods, if the settings ask for it and the methods are compiled.
     pub(super) fn auto(&self) -> Option<&Auto> {
         self.session.as_ref()?.auto()
     }

@@ -17,6 +17,7 @@ use std::rc::Rc;
 use glam::Vec3;
 use wasm_bindgen::prelude::*;
 use web_sys::WebGl2RenderingContext;
+use yoro::choice::{Choice, StereoPath};
 use yoro::eyes::{Eye, Pose};
 use yoro_assets::Scene;
 use yoro_gl::{Context, RenderTarget};
@@ -322,10 +323,16 @@ impl Page {
         Some(self.auto()?.to_string())
     }
 
-    /// Returns the frame times in ms that `auto` has compared, of two renders and of synthesis, if there are any.
+    /// Returns the frame times in ms that `auto` has compared, of two renders and of synthesis, if there are any. Holes are
+    /// filled, unless rendered ones are in use.
     #[wasm_bindgen(getter)]
     pub fn costs(&self) -> Option<Vec<f32>> {
-        Some(self.auto().filter(|auto| !auto.is_measuring())?.choice().costs_ms?.to_vec())
+        let Choice { path, costs_ms, .. } = self.auto().filter(|auto| !auto.is_measuring())?.choice();
+        let synthesis = match path {
+            StereoPath::RenderedHoles => path,
+            _ => StereoPath::Synthesis,
+        };
+        [StereoPath::TwoViews, synthesis].into_iter().map(|path| costs_ms[path.index()]).collect()
     }
 
     /// Draws as [`Page::draw`] does, but faster: without the real images that a display compares with.

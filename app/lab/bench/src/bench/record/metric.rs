@@ -11,6 +11,8 @@ pub const PASS_MS: &str = "pass_ms/";
 /// GPU time of all passes of a frame by timer queries, in ms, only where they can be trusted. One value per round, at
 /// the setting's first frame.
 pub const GPU_MS: &str = "gpu_ms";
+/// Number of draw calls of a stereo frame, without copies and clears. One value per round, at the setting's first frame.
+pub const DRAW_CALLS: &str = "draw_calls";
 /// Size of the textures that the contender holds after its first frame, computed from their formats, in MiB; one value.
 pub const TEXTURE_MIB: &str = "texture_mib";
 /// The same plus the resident memory of the process with the scene loaded and no contender made, in MiB; one value.
@@ -34,6 +36,8 @@ pub const SSIM_UNIFORM: &str = "ssim_uniform";
 pub const FLIP: &str = "flip";
 /// Share of the pixels that the dominant eye's own image does not show, 0 to 1; the same for all contenders.
 pub const HOLE_SHARE: &str = "hole_share";
+/// Share of the pixels that the synthesis leaves open for the scene to be rendered there, 0 to 1.
+pub const OPEN_SHARE: &str = "open_share";
 /// PSNR (RGB) in the holes, in dB.
 pub const HOLE_PSNR: &str = "hole_psnr";
 /// SSIM (gaussian, RGB) in the holes.

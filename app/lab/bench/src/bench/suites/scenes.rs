@@ -173,11 +173,12 @@ fn overhead(suite: &SuiteData) -> Section {
         paper_scene(setting).map_or_else(Vec::new, |scene| over_conventional(scene.memory))
     };
     section.plot(mark_scenes(plot, suite, &others, ratio, papers));
-    const COLUMNS: [MetricColumn; 4] = [
+    const COLUMNS: [MetricColumn; 5] = [
         ("CPU time, ms", metric::CPU_MS, 1),
         ("memory, MiB", metric::MEMORY_MIB, 1),
         ("textures of the method, MiB", metric::TEXTURE_MIB, 1),
         ("GPU time, ms", metric::GPU_MS, 3),
+        ("draw calls", metric::DRAW_CALLS, 0),
     ];
     section.table(means_table(suite, "Means over the scenes", &suite.measured(metric::CPU_MS), &COLUMNS));
     section.table(pass_table(suite));
