@@ -125,7 +125,8 @@ impl<'a> Run<'a> {
     pub fn retry(&mut self, options: &Options) -> anyhow::Result<()> {
         // Tests that failed together are reported only if none of them fails in its own process.
         let is_explained = |name: &String| {
-            self.failed.iter().any(|job| job.program.is_some_and(|program| name.starts_with(&program.label)))
+            let mut programs = self.failed.iter().filter_map(|job| job.program);
+            programs.any(|program| name.starts_with(&format!("{},", program.label)))
         };
         self.flaky.retain(|name| !is_explained(name));
         if self.failed.is_empty() || self.failed.len() > MAX_RETRIED {
