@@ -12,6 +12,8 @@ use yoro_stream::{FromClient, FromServer, Refusal};
 
 /// The largest message of a client in bytes.
 pub const MAX_MESSAGE_BYTES: usize = 1 << 12;
+/// The time allowed for a handshake, its request and the following hello.
+pub const HELLO_TIMEOUT: Duration = Duration::from_secs(10);
 /// A client that sends nothing for this long is considered gone.
 pub const SILENCE: Duration = Duration::from_secs(3);
 

@@ -1,4 +1,4 @@
-//! HTTP, encrypted or not: the page's files, and the way to its WebSocket.
+//! HTTP, encrypted or not: the page's files, and the way to its WebSocket. Connections have little time.
 
 use std::convert::Infallible;
 use std::io;
@@ -18,15 +18,19 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::fs::File;
 use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::time::sleep;
+use tokio::time::{Instant, sleep, timeout_at};
 use tokio_rustls::TlsAcceptor;
 
-use super::client::Lobby;
+use super::client::{HELLO_TIMEOUT, Lobby};
 use super::web_socket;
 use yoro_files::http;
 
+/// The time allowed for sending a file.
+const FILE_TIMEOUT: Duration = Duration::from_secs(60);
 /// The pause after a connection that could not be accepted.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(200);
+/// The largest size of a request's headers in bytes.
+const MAX_HEADERS: usize = 64 << 10;
 /// The size of the pieces in which a file is sent, in bytes.
 const PIECE: usize = 64 << 10;
 
@@ -64,28 +68,38 @@ impl WebServer {
     }
 
     async fn connect(self: Arc<Self>, socket: TcpStream) -> anyhow::Result<()> {
+        let deadline = Instant::now() + HELLO_TIMEOUT;
         socket.set_nodelay(true)?;
         match self.tls.clone() {
-            Some(tls) => self.serve(tls.accept(socket).await?).await,
-            None => self.serve(socket).await,
+            Some(tls) => {
+                let encrypted = timeout_at(deadline, tls.accept(socket)).await??;
+                self.serve(encrypted, deadline).await
+            }
+            None => self.serve(socket, deadline).await,
         }
     }
 
-    /// Answers one request.
+    /// Answers one request, which must arrive before the deadline.
     async fn serve(
         self: Arc<Self>,
         connection: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
+        deadline: Instant,
     ) -> anyhow::Result<()> {
         let service = service_fn(move |request| {
             let server = self.clone();
-            async move { Ok::<_, Infallible>(server.answer(request).await) }
+            async move { Ok::<_, Infallible>(server.answer(request, deadline).await) }
         });
-        let mut http = http1::Builder::new();
-        http.timer(TokioTimer::new()).keep_alive(false);
-        Ok(http.serve_connection(TokioIo::new(connection), service).with_upgrades().await?)
+        let serving = http1::Builder::new()
+            .timer(TokioTimer::new())
+            .header_read_timeout(deadline.saturating_duration_since(Instant::now()))
+            .keep_alive(false)
+            .max_buf_size(MAX_HEADERS)
+            .serve_connection(TokioIo::new(connection), service)
+            .with_upgrades();
+        Ok(timeout_at(deadline + FILE_TIMEOUT, serving).await??)
     }
 
-    async fn answer(&self, request: Request<Incoming>) -> Response<Body> {
+    async fn answer(&self, request: Request<Incoming>, deadline: Instant) -> Response<Body> {
         if request.uri() != "/stream" {
             return file(&self.folder, &request).await;
         }
@@ -96,7 +110,7 @@ impl WebServer {
             return say(StatusCode::FORBIDDEN, "");
         }
         let body = || text("");
-        web_socket::accept(request, body, self.lobby.clone())
+        web_socket::accept(request, body, self.lobby.clone(), deadline)
             .unwrap_or_else(|error| say(StatusCode::BAD_REQUEST, &format!("{error}\n")))
     }
 }

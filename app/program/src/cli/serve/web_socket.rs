@@ -11,7 +11,7 @@ use hyper::upgrade::Upgraded;
 use hyper::{Request, Response};
 use hyper_util::rt::TokioIo;
 use tokio::sync::mpsc as frames;
-use tokio::time::timeout;
+use tokio::time::{self, timeout, timeout_at};
 use tokio_tungstenite::WebSocketStream;
 use tokio_tungstenite::tungstenite::handshake::server::create_response_with_body;
 use tokio_tungstenite::tungstenite::protocol::{Role, WebSocketConfig};
@@ -22,7 +22,8 @@ use yoro_stream::FromClient;
 
 type Socket = WebSocketStream<TokioIo<Upgraded>>;
 
-/// Answers a request for a WebSocket. The connection is served if it is admitted.
+/// Answers a request for a WebSocket. The connection then has until the deadline to be admitted, and is served if it
+/// is.
 ///
 /// # Errors
 /// If the request has not the headers of one for a WebSocket.
@@ -30,11 +31,13 @@ pub fn accept<B>(
     mut request: Request<Incoming>,
     body: impl FnOnce() -> B,
     lobby: Arc<Lobby>,
+    deadline: time::Instant,
 ) -> Result<Response<B>, tungstenite::Error> {
     let response = create_response_with_body(&request, body)?;
     let upgrade = hyper::upgrade::on(&mut request);
     tokio::spawn(async move {
-        match async { admit(upgrade.await?, &lobby).await }.await {
+        let admitted = timeout_at(deadline, async { admit(upgrade.await?, &lobby).await }).await;
+        match admitted.map_err(anyhow::Error::from).flatten() {
             Ok((socket, seat)) => {
                 let (send, frames) = frames::channel(1);
                 let heard = lobby.admit(Box::new(Frames(send)), seat);

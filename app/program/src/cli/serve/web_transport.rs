@@ -9,11 +9,12 @@ use tokio::io::AsyncReadExt as _;
 use tokio::runtime::Handle;
 use tokio::sync::watch;
 use tokio::time::timeout;
+use wtransport::config::QuicTransportConfig;
 use wtransport::endpoint::IncomingSession;
 use wtransport::endpoint::endpoint_side::Server;
 use wtransport::{Connection, Endpoint, ServerConfig, VarInt};
 
-use super::client::{Lobby, MAX_MESSAGE_BYTES, SILENCE, Seat, Transport};
+use super::client::{HELLO_TIMEOUT, Lobby, MAX_MESSAGE_BYTES, SILENCE, Seat, Transport};
 use yoro_stream::FromClient;
 
 /// Listens on a socket, in the runtime in which this is called.
@@ -21,7 +22,17 @@ use yoro_stream::FromClient;
 /// # Errors
 /// If the system refuses.
 pub fn listen(socket: UdpSocket, tls: rustls::ServerConfig) -> anyhow::Result<Endpoint<Server>> {
-    let config = ServerConfig::builder().with_bind_socket(socket).with_custom_tls(tls).build();
+    // Clients that are not admitted yet must not fill up the memory.
+    let mut limits = QuicTransportConfig::default();
+    limits
+        .max_concurrent_bidi_streams(4u8.into())
+        .max_concurrent_uni_streams(8u8.into())
+        .stream_receive_window((MAX_MESSAGE_BYTES as u32).into())
+        .receive_window((16 * MAX_MESSAGE_BYTES as u32).into())
+        .datagram_receive_buffer_size(Some(16 * MAX_MESSAGE_BYTES))
+        .max_idle_timeout(Some(SILENCE.try_into()?));
+    let config =
+        ServerConfig::builder().with_bind_socket(socket).with_custom_tls_and_transport(tls, limits).build();
     Ok(Endpoint::server(config)?)
 }
 
@@ -30,9 +41,15 @@ pub async fn accept(endpoint: &Endpoint<Server>, lobby: &Arc<Lobby>) {
     loop {
         let incoming = endpoint.accept().await;
         let address = incoming.remote_address();
+        if !incoming.remote_address_validated() {
+            // A forged sender address gets no more than a packet.
+            incoming.retry();
+            continue;
+        }
         let lobby = lobby.clone();
         tokio::spawn(async move {
-            match admit(incoming, &lobby).await {
+            let admitted = timeout(HELLO_TIMEOUT, admit(incoming, &lobby)).await;
+            match admitted.map_err(anyhow::Error::from).flatten() {
                 Ok((connection, seat)) => {
                     let heard = lobby.admit(Box::new(Frames::new(connection.clone())), seat);
                     hear(&connection, &heard).await;
