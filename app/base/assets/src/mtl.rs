@@ -96,7 +96,12 @@ pub(super) fn abridged(statement: &str) -> String {
 fn entry(name: String, stated: &HashMap<String, String>) -> MtlEntry {
     let numbers = |keyword: &str| -> Vec<f32> {
         let value = stated.get(keyword).map_or("", |value| value.trim_start_matches("-halo"));
-        value.split_whitespace().map_while(|word| word.parse().ok()).filter(|n: &f32| n.is_finite()).collect()
+        let words = value.split_whitespace().map_while(|word| word.parse().ok());
+        let numbers: Vec<f32> = words.filter(|n: &f32| n.is_finite()).collect();
+        if numbers.is_empty() && !value.is_empty() {
+            log::warn!("material {name}: {keyword} {:?} is no number, the default is used", abridged(value));
+        }
+        numbers
     };
     let number = |keyword: &str| numbers(keyword).first().copied();
     let color = |keyword: &str| match *numbers(keyword).as_slice() {
