@@ -38,6 +38,10 @@ const SCENES: [Scene; 2] = [
             ["linear", "left", "linear"],
             ["resized", "left", "resized"],
             ["lamp", "left", "lamp"],
+            LEVELS[0],
+            LEVELS[1],
+            LEVELS[2],
+            LEVELS[3],
         ],
     },
     Scene {
@@ -48,9 +52,23 @@ const SCENES: [Scene; 2] = [
             ["msaa", "left", "msaa"],
             ["swapped", "right", "plain"],
             ["resized", "left", "resized"],
+            LEVELS[0],
+            LEVELS[1],
+            LEVELS[2],
+            LEVELS[3],
         ],
     },
 ];
+/// What the inset shows of the synthesized eye, with levels and without them, and of the rendered one; and all else,
+/// against an eye that is rendered with the same levels.
+const LEVELS: [Case; 4] = [
+    ["fovea", "left", "fovea"],
+    ["whole", "left", "fovea"],
+    ["eye", "right", "fovea"],
+    ["rest", "left", "rest"],
+];
+/// Maximum loss of the fovea by levels, in dB.
+const LOSS: f64 = 0.1;
 /// Minimum similarity of the synthesized eye to Godot's: PSNR in dB before and after tone mapping, and SSIM.
 const MIN_PSNR: f64 = 35.0;
 const TONE_MAPPED: f64 = 32.5;
@@ -102,6 +120,7 @@ pub fn test() -> anyhow::Result<()> {
             found.extend(missing(scene, &printed));
             match compare(&mut || Command::new(&program), &run, scene.cases) {
                 Ok(figures) => {
+                    found.extend(lost(scene, &figures));
                     for ([case, ..], [made, same]) in scene.cases.iter().zip(figures) {
                         println!(
                             "{what} {case}: {:.2} dB, SSIM {:.4}; the same image to both eyes {:.2} dB, {:.4}",
@@ -214,10 +233,21 @@ fn too_far(scene: &Scene, case: &str, made: Quality, same: Quality) -> Option<St
     // A headset's pictures are copied before tone mapping.
     let floor = if scene.headset || case == "linear" { MIN_PSNR } else { TONE_MAPPED };
     let sound = match case {
-        "ipd0" => made.psnr >= IDENTITY,
+        "ipd0" | "eye" => made.psnr >= IDENTITY,
         _ => made.psnr >= floor && made.ssim >= MIN_SSIM && made.psnr >= same.psnr + GAIN,
     };
     (!sound).then(|| format!("{case} is too far from Godot's own eye: {:.2} dB, {:.4}", made.psnr, made.ssim))
+}
+
+/// Returns what the fovea loses by levels, if that is too much.
+fn lost(scene: &Scene, figures: &[[Quality; 2]]) -> Option<String> {
+    let of = |case: &str| {
+        let found = scene.cases.iter().zip(figures).find(|([name, ..], _)| *name == case);
+        found.map_or(f64::NAN, |(_, [made, _])| made.psnr)
+    };
+    let loss = of("whole") - of("fovea");
+    // Written so that NaN fails, too.
+    (!(loss <= LOSS)).then(|| format!("the fovea loses {loss:.2} dB by levels"))
 }
 
 #[cfg(test)]
@@ -254,5 +284,17 @@ mod tests {
         assert!(too_far(&SCENES[0], "plain", quality(34.0), quality(22.0)).is_none());
         assert!(too_far(&SCENES[0], "linear", quality(34.0), quality(22.0)).is_some());
         assert!(too_far(&SCENES[0], "ipd0", quality(36.0), quality(36.0)).is_some());
+    }
+
+    #[test]
+    fn a_fovea_may_lose_a_tenth_of_a_decibel() {
+        let quality = |psnr| [Quality { psnr, ssim: 0.98 }; 2];
+        let with = |fovea: f64| {
+            let figures: Vec<_> =
+                SCENES[1].cases.iter().map(|[case, ..]| quality(if *case == "fovea" { fovea } else { 36.0 })).collect();
+            lost(&SCENES[1], &figures)
+        };
+        assert!(with(35.95).is_none());
+        assert!(with(35.85).is_some());
     }
 }

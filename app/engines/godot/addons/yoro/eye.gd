@@ -1,4 +1,4 @@
-## The viewport of the rendered eye, which also synthesizes the other one.
+## The viewport of a level of the rendered eye, which also synthesizes the other one's.
 @tool
 class_name YoroEye
 extends SubViewport
@@ -7,7 +7,7 @@ extends SubViewport
 const _OVERRIDES := {glow_enabled = false, adjustment_enabled = false, tonemap_mode = Environment.TONE_MAPPER_LINEAR}
 ## The properties that are copied from the viewport that is shown, since they affect how things are drawn.
 const SHARED: PackedStringArray = [
-	"msaa_3d", "use_occlusion_culling", "mesh_lod_threshold", "positional_shadow_atlas_size", "positional_shadow_atlas_16_bits",
+	"msaa_3d", "use_occlusion_culling", "positional_shadow_atlas_size", "positional_shadow_atlas_16_bits",
 	"positional_shadow_atlas_quad_0", "positional_shadow_atlas_quad_1", "positional_shadow_atlas_quad_2",
 	"positional_shadow_atlas_quad_3", "anisotropic_filtering_level", "texture_mipmap_bias",
 ]

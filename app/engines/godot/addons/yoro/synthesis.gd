@@ -38,6 +38,15 @@ func _notification(what: int) -> void:
 		YoroPasses.free_all(passes.device, [synthesized_color, synthesized_depth, source_map, _tiles, _spans, _nearest])
 
 
+## Returns the depth, the colour and the map of the rendered eye, or of the synthesized one. Where there is no map, some
+## texture like it stands for it.
+func images(rendered: bool) -> Array[RID]:
+	var map_of_holes := source_map if source_map.is_valid() else _tiles
+	if rendered:
+		return [rendered_depth, rendered_color, map_of_holes]
+	return [synthesized_depth, synthesized_color, map_of_holes]
+
+
 ## Creates the textures anew if their sizes have changed, which follow the viewport's.
 func _allocate(format: RenderingDevice.DataFormat, multisampled: bool) -> void:
 	var want := [views.size, views.eye_size, format, multisampled, map]
