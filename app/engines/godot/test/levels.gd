@@ -4,9 +4,9 @@ class_name TestLevels
 const EYES: PackedStringArray = ["left", "right"]
 
 
-## Takes pictures of both eyes with [param take], and saves parts of them in [param folder]: for [code]fovea[/code],
-## [code]whole[/code] and [code]eye[/code] what the inset shows, with levels, without them, and of the rendered eye; for
-## [code]rest[/code] all else, against an eye that is rendered with the same levels.
+## Takes pictures of both eyes with [param take], and saves parts of them in [param folder]: as [code]fovea[/code] and
+## [code]whole[/code] what the inset shows, with levels and without them; as [code]rest[/code] all else, against an eye
+## that is rendered with the same levels.
 static func save(camera: YoroCamera3D, gaze: Vector3, take: Callable, folder: String) -> void:
 	camera.gaze = gaze
 	camera.mode = YoroCamera3D.Mode.BOTH_VIEWS
@@ -28,9 +28,11 @@ static func save(camera: YoroCamera3D, gaze: Vector3, take: Callable, folder: St
 		var scale := Vector2(levels[eye].get_size()) / (split.whole.covered * Vector2(split.whole.eye_size))
 		var place := Rect2(split.places[eye])
 		var inside := Rect2i(Rect2(place.position * scale, place.size * scale).grow(-1.0))
-		var parts := {"fovea-both_views": godots, "fovea-one_view": levels, "whole-one_view": whole, "eye-one_view": levels}
+		var parts := {"fovea-both_views": godots, "fovea-one_view": levels, "whole-one_view": whole}
 		for name: String in parts:
-			parts[name][eye].get_region(inside).save_png("%s/%s-%s.png" % [folder, name, EYES[eye]])
+			var part: Image = parts[name][eye].get_region(inside)
+			part.save_png("%s/%s-%s.png" % [folder, name, EYES[eye]])
+			part.save_png("%s/rendered-%s-%s.png" % [folder, name, EYES[eye]])
 	for rest: Array in [[levels[0], "one_view", 0], [like[0], "both_views", 0], [levels[1], "both_views", 1]]:
 		var place := Rect2(split.places[rest[2]])
 		var scale := Vector2(rest[0].get_size()) / (split.whole.covered * Vector2(split.whole.eye_size))
