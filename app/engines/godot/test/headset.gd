@@ -115,9 +115,7 @@ func _ready() -> void:
 	await _pause(interface)
 	get_viewport().msaa_3d = Viewport.MSAA_4X
 	await _case("msaa")
-	room.sun.shadow_enabled = false
 	await TestLevels.save(camera, Vector3(-0.25, 0.1, -1.0), _pictures, out)
-	room.sun.shadow_enabled = true
 	get_viewport().msaa_3d = Viewport.MSAA_DISABLED
 	camera.dominant_eye = YoroCamera3D.Eye.LEFT
 	await _case("swapped", ["ONE_VIEW"])

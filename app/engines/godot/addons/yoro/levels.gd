@@ -19,6 +19,11 @@ var whole: YoroViews
 var wide: YoroViews
 ## The views around the gaze, or null.
 var inset: YoroViews
+## The views whose image the inset is a part of: [member inset], or [member whole] if the gaze is not straight ahead, since
+## Godot fits a sun's shadow maps to views that are symmetric.
+var inset_image: YoroViews
+## The place of the inset's image in that of [member inset_image].
+var inset_part: Rect2i
 ## The place of each eye's inset in [member whole], in its pixels, counted from the topmost row. Both have one size.
 var places: Array[Rect2i] = [Rect2i(), Rect2i()]
 ## The place of each eye's topmost left corner in its wide image, in pixels of that.
@@ -37,7 +42,7 @@ static func of(frusta: Array, between: Transform3D, near: float, far: float, ren
 	if made.trouble == "" and strength > 0:
 		var level := _STRENGTHS[strength]
 		made._place_insets(frusta, deg_to_rad(level.x), gaze)
-		made._split(frusta, between, near, far, guard_band, level.y)
+		made._split(frusta, between, near, far, guard_band, level.y, gaze != Vector3.ZERO)
 	return made
 
 
@@ -63,28 +68,49 @@ func _place_insets(frusta: Array, angle: float, gaze: Vector3) -> void:
 
 
 ## Makes both levels, unless one level of all pixels is cheaper.
-func _split(frusta: Array, between: Transform3D, near: float, far: float, guard_band: float, density: float) -> void:
-	var insets: Array = []
+func _split(frusta: Array, between: Transform3D, near: float, far: float, guard_band: float, density: float,
+		moves: bool) -> void:
 	var wides: Array = []
 	for eye in 2:
 		var f: Array = frusta[eye]
-		var place := Rect2(places[eye])
-		insets.append([f[0] + place.position.x * whole.pitch, f[0] + place.end.x * whole.pitch,
-				f[2] - place.position.y * whole.pitch, f[2] - place.end.y * whole.pitch])
 		# The rows of both eyes' wide levels are the same.
 		wides.append([f[0], f[1], maxf(frusta[0][2], frusta[1][2]), minf(frusta[0][3], frusta[1][3])])
 	var around: Array = wides[whole.rendered]
 	var scale := density / whole.pitch
 	var pixels := Vector2i(ceili((around[1] - around[0]) * scale - 1e-3), ceili((around[2] - around[3]) * scale - 1e-3))
 	var few := YoroViews.of(wides, between, near, far, whole.rendered, pixels, guard_band)
-	var all := YoroViews.of(insets, between, near, far, whole.rendered, places[0].size, _NEAREST)
+	var all := YoroViews.of(_insets(frusta), between, near, far, whole.rendered, places[0].size, _NEAREST)
+	if moves and all.trouble == "":
+		# Within the whole image, with all that the other eye's inset needs.
+		var at := places[whole.rendered].position + whole.crop - all.crop
+		var shift := at.clamp(Vector2i.ZERO, (whole.size - all.size).max(Vector2i.ZERO)) - at
+		for eye in 2:
+			places[eye].position += shift
+		all = YoroViews.of(_insets(frusta), between, near, far, whole.rendered, places[0].size, _NEAREST)
 	if few.trouble != "" or all.trouble != "" or _pixels(few) + _pixels(all) >= _pixels(whole):
 		return
 	wide = few
 	inset = all
+	inset_image = inset
+	inset_part = Rect2i(Vector2i.ZERO, inset.size)
+	var part := Rect2i(places[whole.rendered].position + whole.crop - inset.crop, inset.size)
+	if moves and Rect2i(Vector2i.ZERO, whole.size).encloses(part):
+		inset_image = whole
+		inset_part = part
 	for eye in 2:
 		var corner := Vector2(0.0, (wides[eye][2] - frusta[eye][2]) / wide.pitch)
 		wide_corners[eye] = corner + (Vector2(wide.crop) if eye == wide.rendered else Vector2.ZERO)
+
+
+## Returns the frusta of the insets.
+func _insets(frusta: Array) -> Array:
+	var insets: Array = []
+	for eye in 2:
+		var f: Array = frusta[eye]
+		var place := Rect2(places[eye])
+		insets.append([f[0] + place.position.x * whole.pitch, f[0] + place.end.x * whole.pitch,
+				f[2] - place.position.y * whole.pitch, f[2] - place.end.y * whole.pitch])
+	return insets
 
 
 static func _pixels(of: YoroViews) -> int:

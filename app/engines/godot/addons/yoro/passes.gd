@@ -3,7 +3,7 @@
 class_name YoroPasses
 extends RefCounted
 
-const _SHADERS: PackedStringArray = ["tiles", "spans", "march", "nearest", "put", "grid"]
+const _SHADERS: PackedStringArray = ["tiles", "spans", "march", "part", "put", "grid"]
 ## The bindings of the textures that are interpolated; all others are read texel by texel.
 const _INTERPOLATED: Array[int] = [1, 4]
 

@@ -10,6 +10,7 @@ var wide: YoroEye
 ## The viewport around the gaze, which is drawn only if there is such a level.
 var inset: YoroEye
 var passes := YoroPasses.new()
+var _mask := YoroMask.new()
 
 
 func _init() -> void:
@@ -41,13 +42,20 @@ func draw(of: YoroLevels, at: Transform3D, like: YoroCamera3D, shown: Viewport, 
 		inset.rest()
 	for eye in drawn():
 		var views := levels.inset if eye == inset else levels.wide
+		var image := levels.inset_image if eye == inset else levels.wide
+		var part := levels.inset_part if eye == inset else Rect2i(Vector2i.ZERO, levels.wide.size)
 		eye.synthesis.map = like.debug_view == YoroCamera3D.DebugView.HOLES
-		eye.follow(like, shown, effects)
+		eye.follow(like, shown, effects, YoroMask.LAYER if image != views else 0)
+		if image != views:
+			_mask.follow(eye.world_3d, part, image.size)
 		# Levels of detail are those of the eye's own pixels in each level. The viewport has half of these.
 		var threshold := shown.mesh_lod_threshold * 0.5 * levels.whole.pitch / views.pitch
 		if eye.mesh_lod_threshold != threshold:
 			eye.mesh_lod_threshold = threshold
-		eye.draw(views, at, like.near, like.far)
+		eye.synthesis.views = views
+		eye.synthesis.part = part
+		eye.synthesis.image_size = image.size
+		eye.draw(image, at, like.near, like.far)
 
 
 ## Draws nothing.
