@@ -46,7 +46,7 @@ func draw(of: YoroLevels, at: Transform3D, like: YoroCamera3D, shown: Viewport, 
 		var part := levels.inset_part if eye == inset else Rect2i(Vector2i.ZERO, levels.wide.size)
 		eye.synthesis.map = like.debug_view == YoroCamera3D.DebugView.HOLES
 		eye.follow(like, shown, effects, YoroMask.LAYER if image != views else 0)
-		if image != views:
+		if eye == inset:
 			_mask.follow(eye.world_3d, part, image.size)
 		# Levels of detail are those of the eye's own pixels in each level. The viewport has half of these.
 		var threshold := shown.mesh_lod_threshold * 0.5 * levels.whole.pitch / views.pitch
