@@ -4,7 +4,7 @@
 class_name YoroMask
 extends RefCounted
 
-## The layer of the frame, which cameras do not show unless they are told to.
+## The layer of the frame. Nodes have the first twenty, and the editor the next ones but this.
 const LAYER := 1 << 31
 
 const _SHADER := "
@@ -24,6 +24,7 @@ void fragment() {
 var _mesh := ArrayMesh.new()
 var _material := ShaderMaterial.new()
 var _instance := RenderingServer.instance_create()
+var _scenario: RID
 
 
 func _init() -> void:
@@ -58,7 +59,9 @@ func _notification(what: int) -> void:
 
 ## Leaves only [param rectangle] of images of [param size] in a world.
 func follow(world: World3D, rectangle: Rect2i, size: Vector2i) -> void:
-	RenderingServer.instance_set_scenario(_instance, world.scenario)
+	if _scenario != world.scenario:
+		_scenario = world.scenario
+		RenderingServer.instance_set_scenario(_instance, _scenario)
 	var from := Vector2(rectangle.position) / Vector2(size)
 	var to := Vector2(rectangle.end) / Vector2(size)
 	_material.set_shader_parameter(&"rectangle", Vector4(from.x, from.y, to.x, to.y))
