@@ -51,6 +51,17 @@ const SCENES: [Scene; 2] = [
         ],
     },
 ];
+/// In all scenes: what the inset shows of either eye, with levels and without them; and all else of the synthesized one,
+/// against an eye that is rendered with the same levels.
+const LEVELS: [Case; 5] = [
+    ["fovea", "left", "fovea"],
+    ["whole", "left", "fovea"],
+    ["rendered-fovea", "right", "fovea"],
+    ["rendered-whole", "right", "fovea"],
+    ["rest", "left", "rest"],
+];
+/// Maximum loss of the fovea by levels.
+const LOSS: Quality = Quality { psnr: 0.1, ssim: 0.001 };
 /// Minimum similarity of the synthesized eye to Godot's: PSNR in dB before and after tone mapping, and SSIM.
 const MIN_PSNR: f64 = 35.0;
 const TONE_MAPPED: f64 = 32.5;
@@ -100,9 +111,11 @@ pub fn test() -> anyhow::Result<()> {
             let printed = play(&session, scene, renderer, &project, &run)?;
             let mut found = errors(&printed);
             found.extend(missing(scene, &printed));
-            match compare(&mut || Command::new(&program), &run, scene.cases) {
+            let cases: Vec<Case> = scene.cases.iter().chain(&LEVELS).copied().collect();
+            match compare(&mut || Command::new(&program), &run, &cases) {
                 Ok(figures) => {
-                    for ([case, ..], [made, same]) in scene.cases.iter().zip(figures) {
+                    found.extend(lost(&figures[scene.cases.len()..]));
+                    for ([case, ..], [made, same]) in cases.iter().zip(figures) {
                         println!(
                             "{what} {case}: {:.2} dB, SSIM {:.4}; the same image to both eyes {:.2} dB, {:.4}",
                             made.psnr, made.ssim, same.psnr, same.ssim
@@ -215,9 +228,21 @@ fn too_far(scene: &Scene, case: &str, made: Quality, same: Quality) -> Option<St
     let floor = if scene.headset || case == "linear" { MIN_PSNR } else { TONE_MAPPED };
     let sound = match case {
         "ipd0" => made.psnr >= IDENTITY,
+        // Parts with more edges than the whole, which are compared with each other.
+        "fovea" | "whole" => made.psnr >= same.psnr + GAIN,
         _ => made.psnr >= floor && made.ssim >= MIN_SSIM && made.psnr >= same.psnr + GAIN,
     };
     (!sound).then(|| format!("{case} is too far from Godot's own eye: {:.2} dB, {:.4}", made.psnr, made.ssim))
+}
+
+/// Returns what each eye's fovea loses by levels, if that is too much. The figures are those of [`LEVELS`].
+fn lost(figures: &[[Quality; 2]]) -> impl Iterator<Item = String> {
+    let losses = figures.chunks_exact(2).map(|eye| {
+        let ([fovea, _], [whole, _]) = (eye[0], eye[1]);
+        Quality { psnr: whole.psnr - fovea.psnr, ssim: whole.ssim - fovea.ssim }
+    });
+    let large = losses.filter(|loss| loss.psnr > LOSS.psnr || loss.ssim > LOSS.ssim);
+    large.map(|loss| format!("a fovea loses by levels: {:.2} dB, {:.4}", loss.psnr, loss.ssim))
 }
 
 #[cfg(test)]
@@ -254,5 +279,16 @@ mod tests {
         assert!(too_far(&SCENES[0], "plain", quality(34.0), quality(22.0)).is_none());
         assert!(too_far(&SCENES[0], "linear", quality(34.0), quality(22.0)).is_some());
         assert!(too_far(&SCENES[0], "ipd0", quality(36.0), quality(36.0)).is_some());
+    }
+
+    #[test]
+    fn a_fovea_may_lose_a_tenth_of_a_decibel() {
+        let figures = |fovea, ssim| {
+            let others = [36.0, 50.0, 50.0, 34.0].map(|psnr| [Quality { psnr, ssim: 0.98 }; 2]);
+            [[[Quality { psnr: fovea, ssim }; 2]].as_slice(), &others].concat()
+        };
+        assert_eq!(lost(&figures(35.95, 0.9795)).count(), 0);
+        assert_eq!(lost(&figures(35.85, 0.98)).count(), 1);
+        assert_eq!(lost(&figures(36.0, 0.97)).count(), 1);
     }
 }

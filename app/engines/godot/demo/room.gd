@@ -7,6 +7,7 @@ const STEREO := YoroMarks.LAYER
 
 var environment := WorldEnvironment.new()
 var lamp := OmniLight3D.new()
+var sun := DirectionalLight3D.new()
 
 
 func _init() -> void:
@@ -43,7 +44,6 @@ func _init() -> void:
 	glass.roughness = 0.1
 	_box(Vector3(0.5, 0.5, 0.03), Vector3(0.4, 1.45, -1.2), glass).layers = STEREO
 	_sphere(0.12, Vector3(-0.1, 1.3, -1.3), glass).layers = STEREO
-	var sun := DirectionalLight3D.new()
 	sun.rotation_degrees = Vector3(-50, -40, 0)
 	sun.light_energy = 0.8
 	sun.shadow_enabled = true

@@ -31,7 +31,7 @@ class Hold:
 ## Copies the images of both eyes, before tone mapping, and compares the rendered pose with the one that is shown.
 class Look:
 	extends CompositorEffect
-	var synthesis: YoroSynthesis
+	var source: YoroSource
 	var wanted := false
 	var pictures: Array[Image] = []
 	var radians := 0.0
@@ -44,16 +44,18 @@ class Look:
 	func _render_callback(_type: int, data: RenderData) -> void:
 		frames += 1
 		var buffers := data.get_render_scene_buffers() as RenderSceneBuffersRD
-		if synthesis != null and synthesis.ready:
+		if source != null and source.is_ready():
 			var scene := data.get_render_scene_data()
-			var eye := scene.get_cam_transform().translated_local(scene.get_view_eye_offset(synthesis.views.rendered))
-			radians = maxf(radians, (eye.basis.inverse() * synthesis.pose.basis).get_rotation_quaternion().get_angle())
-			metres = maxf(metres, eye.origin.distance_to(synthesis.pose.origin))
-		if not wanted or synthesis == null:
+			var eye := scene.get_cam_transform().translated_local(scene.get_view_eye_offset(source.levels.whole.rendered))
+			for level in source.drawn():
+				var pose := level.synthesis.pose
+				radians = maxf(radians, (eye.basis.inverse() * pose.basis).get_rotation_quaternion().get_angle())
+				metres = maxf(metres, eye.origin.distance_to(pose.origin))
+		if not wanted or source == null:
 			return
 		wanted = false
 		pictures = []
-		var passes := synthesis.passes
+		var passes := source.passes
 		if not passes._shaders.has("look"):
 			passes._shaders["look"] = passes.device.shader_create_from_spirv(preload("look.glsl").get_spirv())
 		var push := PackedByteArray()
@@ -95,7 +97,7 @@ func _ready() -> void:
 	camera.compositor = Compositor.new()
 	camera.compositor.compositor_effects = [look]
 	await _frames(12)
-	look.synthesis = camera.synthesis()
+	look.source = camera.source()
 	print("fact views %d" % interface.get_view_count())
 	var was := hold.at
 	# At an arm's length from the wall, past its right end: a fifth, two fifths and then most of the view is near, and
@@ -113,6 +115,7 @@ func _ready() -> void:
 	await _pause(interface)
 	get_viewport().msaa_3d = Viewport.MSAA_4X
 	await _case("msaa")
+	await TestLevels.save(camera, Vector3(-0.25, 0.1, -1.0), _pictures, out)
 	get_viewport().msaa_3d = Viewport.MSAA_DISABLED
 	camera.dominant_eye = YoroCamera3D.Eye.LEFT
 	await _case("swapped", ["ONE_VIEW"])
@@ -123,6 +126,7 @@ func _ready() -> void:
 	await _frames(2)
 	await _case("resized")
 	# The head moves again: these pictures are not compared.
+	camera.foveation = YoroCamera3D.Foveation.HIGH
 	interface.render_target_size_multiplier = 0.5
 	first.queue_free()
 	look.radians = 0.0
@@ -151,7 +155,7 @@ func _pause(interface: OpenXRInterface) -> void:
 	await _frames(2)
 	var drawn := look.frames
 	await _frames(4)
-	var rests := camera.source_viewport().render_target_update_mode == SubViewport.UPDATE_DISABLED
+	var rests := camera.source().wide.render_target_update_mode == SubViewport.UPDATE_DISABLED
 	print("fact paused %s, drawn %d, rests %s" % [not camera._is_shown(interface), look.frames - drawn, rests])
 	OS.kill(visitor)
 	await _until(func() -> bool: return camera._is_shown(interface))
@@ -180,10 +184,16 @@ func _until(holds: Callable) -> void:
 func _case(name: String, modes: Array[String] = ["BOTH_VIEWS", "ONE_VIEW"]) -> void:
 	for mode in modes:
 		camera.mode = YoroCamera3D.Mode[mode]
-		await _frames(2)
-		look.wanted = true
-		while look.wanted:
-			await _frames(1)
+		var pictures := await _pictures()
 		for view in 2:
-			look.pictures[view].convert(Image.FORMAT_RGB8)
-			look.pictures[view].save_png("%s/%s-%s-%s.png" % [out, name, mode.to_lower(), ["left", "right"][view]])
+			pictures[view].save_png("%s/%s-%s-%s.png" % [out, name, mode.to_lower(), ["left", "right"][view]])
+
+
+func _pictures() -> Array[Image]:
+	await _frames(2)
+	look.wanted = true
+	while look.wanted:
+		await _frames(1)
+	for picture in look.pictures:
+		picture.convert(Image.FORMAT_RGB8)
+	return look.pictures

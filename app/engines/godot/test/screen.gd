@@ -64,6 +64,7 @@ func _ready() -> void:
 	# The initial size again, after everything above.
 	get_window().size = Vector2i(1024, 512)
 	await _frames(2)
+	await _has_levels()
 	await _follows()
 	await _takes_turns()
 	camera.preview_without_headset = false
@@ -75,6 +76,81 @@ func _ready() -> void:
 
 func _warnings() -> int:
 	return YoroMarks.warnings(room, camera.stereo_layers, camera.cull_mask).size()
+
+
+## Pictures with levels, and what stays and what changes with the gaze.
+func _has_levels() -> void:
+	# Godot fits the sun's shadow maps to each view, so they are finer in the inset. Those of lamps are the same.
+	room.sun.shadow_enabled = false
+	room.lamp.shadow_enabled = true
+	await TestLevels.save(camera, Vector3.ZERO, _both_images, out)
+	var whole := camera.source().levels.whole
+	# Without stereo layers, glass is drawn in each level.
+	camera.stereo_layers = 0
+	await _frames(2)
+	var before := _image(camera.dominant_eye)
+	ProjectSettings.set_setting(YoroCamera3D.FOVEATION_SETTING, 2)
+	camera.foveation = YoroCamera3D.Foveation.PROJECT
+	await _frames(2)
+	var place := camera.source().levels.places[camera.dominant_eye].grow(-1)
+	var levels: float = before.get_region(place).compute_image_metrics(_image(camera.dominant_eye).get_region(place), false).root_mean_squared
+	# Edges are rounded to other parts of a pixel.
+	print("fact without stereo layers the fovea is as before: %s" % [levels < 2.0])
+	camera.stereo_layers = DemoRoom.STEREO
+	await _frames(2)
+	_count("medium")
+	camera.gaze = Vector3.FORWARD
+	await _frames(3)
+	var sizes := {}
+	var places := {}
+	for gaze: Vector3 in [Vector3.FORWARD, Vector3(-0.4, 0.1, -1.0), Vector3(0.3, -0.3, -1.0), Vector3.RIGHT, Vector3(0.0, 5.0, 1.0)]:
+		camera.gaze = gaze
+		await _frames(1)
+		var split := camera.source().levels
+		sizes[[split.wide.size, split.inset.size, RenderingServer.get_rendering_info(RenderingServer.RENDERING_INFO_VIDEO_MEM_USED)]] = true
+		places[split.places[0].position] = true
+		var inside := split.places.all(func(it: Rect2i) -> bool: return Rect2i(Vector2i.ZERO, whole.eye_size).encloses(it))
+		if not inside or not camera.source().is_ready():
+			print("the inset for %s is not drawn: %s" % [gaze, split.places])
+			places.clear()
+	print("fact as the gaze moves: sizes and bytes %d, places %d" % [sizes.size(), places.size()])
+	camera.gaze = Vector3.ZERO
+	ProjectSettings.set_setting(YoroCamera3D.FOVEATION_SETTING, 0)
+	await _frames(2)
+	print("fact the project sets the foveation: %s" % [camera.source().levels.inset == null])
+	_count("off")
+	camera.mode = YoroCamera3D.Mode.BOTH_VIEWS
+	await _frames(2)
+	_count("both views")
+	camera.mode = YoroCamera3D.Mode.ONE_VIEW
+	room.sun.shadow_enabled = true
+	room.lamp.shadow_enabled = false
+
+
+## Prints the pixels and the draw calls of the last frame.
+func _count(what: String) -> void:
+	var drawn: Array[Viewport] = []
+	drawn.assign(camera.preview().eyes)
+	if camera.mode == YoroCamera3D.Mode.ONE_VIEW:
+		drawn.append_array(camera.source().drawn())
+	var calls: Array[Array] = []
+	var pixels := 0
+	for viewport in drawn:
+		var rendered := 0
+		if viewport is YoroEye:
+			rendered = viewport.synthesis.views.size.x * viewport.synthesis.views.size.y
+		elif camera.mode == YoroCamera3D.Mode.BOTH_VIEWS:
+			rendered = (viewport as SubViewport).size.x * (viewport as SubViewport).size.y
+		pixels += rendered
+		calls.append([RenderingServer.VIEWPORT_RENDER_INFO_TYPE_VISIBLE, RenderingServer.VIEWPORT_RENDER_INFO_TYPE_SHADOW].map(
+				func(type: int) -> int: return RenderingServer.viewport_get_render_info(viewport.get_viewport_rid(),
+						type as RenderingServer.ViewportRenderInfoType, RenderingServer.VIEWPORT_RENDER_INFO_DRAW_CALLS_IN_FRAME)))
+	print("counted, %s: %d pixels; draw calls, and those of shadows, by viewport: %s" % [what, pixels, calls])
+
+
+func _both_images() -> Array[Image]:
+	await _frames(2)
+	return [_image(0), _image(1)]
 
 
 ## The preview has the window's pixels and the camera's lens, also while the scene is paused, or says why there is none.
@@ -97,7 +173,7 @@ func _follows() -> void:
 	print("fact follows while paused %s" % [shown.global_position.distance_to(left) < 1e-4
 			and shown.global_basis.is_equal_approx(camera.global_basis)])
 	var across := tan(deg_to_rad(camera.fov) / 2.0)
-	var rendered := camera.synthesis().views.frustum
+	var rendered := camera.source().levels.whole.frustum
 	print("fact the angle is kept across %s, %s" % [absf(shown.get_camera_projection().get_fov() - camera.fov) < 0.01,
 			absf(rendered[2] - across / 2.0) < 1e-4])
 	get_tree().paused = false

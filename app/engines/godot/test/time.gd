@@ -6,10 +6,12 @@ extends Node
 
 ## The settings of each variant. The first one is Godot's stereo.
 const VARIANTS: Array[Dictionary] = [
-	{mode = YoroCamera3D.Mode.BOTH_VIEWS, near_limit = 0.4, stereo_layers = DemoRoom.STEREO},
-	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = DemoRoom.STEREO},
-	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.0, stereo_layers = DemoRoom.STEREO},
-	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = 0},
+	{mode = YoroCamera3D.Mode.BOTH_VIEWS, near_limit = 0.4, stereo_layers = DemoRoom.STEREO, foveation = YoroCamera3D.Foveation.OFF},
+	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = DemoRoom.STEREO, foveation = YoroCamera3D.Foveation.OFF},
+	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.0, stereo_layers = DemoRoom.STEREO, foveation = YoroCamera3D.Foveation.OFF},
+	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = 0, foveation = YoroCamera3D.Foveation.OFF},
+	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = 0, foveation = YoroCamera3D.Foveation.MEDIUM},
+	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = 0, foveation = YoroCamera3D.Foveation.HIGH},
 ]
 ## The number of measured frames in a block. The [constant SKIPPED] frames before them are not counted.
 const FRAMES := 8
@@ -31,16 +33,16 @@ func _ready() -> void:
 		interface.render_target_size_multiplier = 2.0
 	await _frames(12)
 	var shown: Array[Viewport] = [get_viewport()]
-	var eye: Viewport = camera.source_viewport()
 	if camera.preview() != null:
 		shown.assign(camera.preview().eyes)
-		eye = camera.preview().source
-	for viewport: Viewport in shown + [eye]:
+	var levels: Array[Viewport] = [camera.source().wide, camera.source().inset]
+	for viewport: Viewport in shown + levels:
 		RenderingServer.viewport_set_measure_render_time(viewport.get_viewport_rid(), true)
 	var times: Array[Dictionary] = []
 	for variant in VARIANTS:
 		times.append({frame = [], processor = [], shown = [], eye = []})
-	var stages: Array[Dictionary] = [{}, {}, {}, {}]
+	var stages: Array[Dictionary] = []
+	stages.assign(VARIANTS.map(func(_it: Dictionary) -> Dictionary: return {}))
 	for block in blocks:
 		for i: int in wanted:
 			for property: String in VARIANTS[i]:
@@ -53,7 +55,7 @@ func _ready() -> void:
 				times[i].frame.append((Time.get_ticks_usec() - start) / 1000.0)
 				_add_stages(stages[i])
 				times[i].shown.append(_gpu(shown))
-				times[i].eye.append(_gpu([eye]) if camera.mode == YoroCamera3D.Mode.ONE_VIEW else 0.0)
+				times[i].eye.append(_gpu(levels.slice(0, _drawn())))
 			times[i].processor.append((_processor() - processor) * 1000.0 / FRAMES)
 	for i: int in wanted:
 		var medians: Array[float] = []
@@ -64,6 +66,11 @@ func _ready() -> void:
 			if _median(stages[i][stage]) >= 1.0:
 				print("stage %d, viewport %s: %.1f ms" % [i, stage, _median(stages[i][stage])])
 	get_tree().quit()
+
+
+## Returns how many levels are drawn.
+func _drawn() -> int:
+	return camera.source().drawn().size() if camera.mode == YoroCamera3D.Mode.ONE_VIEW else 0
 
 
 ## Returns the GPU time of the viewports' last frame, in ms.

@@ -25,6 +25,13 @@ enum DebugView {
 	DISPARITY, ## How far surfaces move between the eyes: white is a tenth of the image's width.
 	SYNTHESIZED, ## The synthesized eye's image to both eyes.
 }
+enum Foveation {
+	PROJECT, ## As the project settings say, in [i]XR > Yoro[/i].
+	OFF, ## All pixels everywhere.
+	LOW, ## All pixels within 30° of the gaze, half of them along each axis beyond.
+	MEDIUM, ## All pixels within 20° of the gaze, half of them along each axis beyond.
+	HIGH, ## All pixels within 20° of the gaze, a third of them along each axis beyond.
+}
 ## What Godot draws with this camera.
 enum _Drawn {
 	ALL, ## As without this add-on.
@@ -37,6 +44,8 @@ enum _Drawn {
 const SHOWN_OVERRIDES := {
 	background_mode = Environment.BG_COLOR, ssao_enabled = false, ssil_enabled = false, ssr_enabled = false, sdfgi_enabled = false,
 }
+## The project setting of the foveation where a camera has none of its own: 0 off, 1 low, 2 medium, 3 high.
+const FOVEATION_SETTING := "xr/yoro/foveation"
 ## Godot renders both eyes once this share of the view is near, and until less than [code]_SWITCH_OFF[/code] is: the
 ## same as yoro's NearFieldPolicy.
 const _SWITCH_ON := 0.5
@@ -49,6 +58,9 @@ const _SWITCH_OFF := 0.35
 ## From this distance on, in metres, nothing is missing at the outer border of the synthesized eye. The nearer it is,
 ## the wider is the rendered image: by 4 to 14 % at 1 m. 0 means no band.
 @export_range(0.0, 10.0, 0.05, "or_greater", "suffix:m") var guard_band := 1.0
+## How many pixels are rendered where the eyes do not look. A wide view of fewer pixels and an inset of all of them
+## are rendered and synthesized apart, then composed. What is on [member stereo_layers] has all pixels.
+@export var foveation := Foveation.PROJECT
 ## The distance between the eyes, as a share of the headset's: 0 shows the same image to both. In XR, things on
 ## [member stereo_layers] keep the headset's distance.
 @export_range(0.0, 2.0, 0.01) var ipd_scale := 1.0
@@ -69,8 +81,11 @@ const _SWITCH_OFF := 0.35
 ## perspective.
 @export var preview_without_headset := false
 
-var _passes: YoroPasses
-var _eye: YoroEye
+## Where the eyes look, as a direction in the world, such as that of an eye tracker; it may change in each frame. Zero
+## stands for straight ahead.
+var gaze := Vector3.ZERO
+
+var _source: YoroSource
 var _put: YoroPut
 var _nearness: YoroNearness
 var _latch: YoroLatch
@@ -105,16 +120,21 @@ func effects(after_transparent: bool) -> Array[CompositorEffect]:
 	return of_kind
 
 
-## Returns the synthesis in use, or null.
-func synthesis() -> YoroSynthesis:
+## Returns the rendered eye, with all that is made of it, or null before the first frame with a headset.
+func source() -> YoroSource:
 	if _preview != null:
-		return (_preview.get_child(0) as YoroPreview).source.synthesis
-	return _eye.synthesis if _eye != null else null
+		return preview().source
+	return _source
 
 
-## Returns the viewport of the rendered eye, or null before the first frame with a headset.
-func source_viewport() -> SubViewport:
-	return _eye
+## Returns the strength of the foveation in use: 0 off, 1 low, 2 medium, 3 high.
+func foveation_strength() -> int:
+	return ProjectSettings.get_setting(FOVEATION_SETTING, 0) if foveation == Foveation.PROJECT else foveation - 1
+
+
+## Returns [member gaze] in the axes of an eye at [param at].
+func gaze_from(at: Transform3D) -> Vector3:
+	return at.basis.inverse() * gaze
 
 
 ## Returns the preview, or null if there is none.
@@ -182,7 +202,7 @@ func _follow() -> void:
 		# The session is paused, so nothing is visible. Godot does not draw this camera's viewport either.
 		_rest()
 		return
-	if _eye == null:
+	if _source == null:
 		_make()
 	_draw(interface, viewport)
 
@@ -195,12 +215,11 @@ func _is_shown(interface: OpenXRInterface) -> bool:
 
 ## Creates everything that is drawn before the headset's viewport.
 func _make() -> void:
-	_passes = YoroPasses.new()
-	_eye = YoroEye.new(_passes)
-	_put = YoroPut.new(_eye.synthesis)
-	_nearness = YoroNearness.new(_eye.synthesis)
+	_source = YoroSource.new()
+	_put = YoroPut.new(_source)
+	_nearness = YoroNearness.new(_source.wide.synthesis)
 	_latch = YoroLatch.new()
-	_latch.camera = _eye.camera.get_camera_rid()
+	_latch.cameras = [_source.wide.camera.get_camera_rid(), _source.inset.camera.get_camera_rid()]
 	_latch_viewport = SubViewport.new()
 	_latch_viewport.size = Vector2i(2, 2)
 	# A world of its own has nothing that would have to be culled.
@@ -214,7 +233,7 @@ func _make() -> void:
 	_latch_viewport.add_child(nothing)
 	# Sibling viewports are drawn in this order, and before the viewport that contains them.
 	add_child(_latch_viewport, false, Node.INTERNAL_MODE_FRONT)
-	add_child(_eye, false, Node.INTERNAL_MODE_FRONT)
+	add_child(_source, false, Node.INTERNAL_MODE_FRONT)
 
 
 func _draw(interface: XRInterface, viewport: Viewport) -> void:
@@ -228,9 +247,10 @@ func _draw(interface: XRInterface, viewport: Viewport) -> void:
 		at.append(interface.get_transform_for_view(view, XRServer.world_origin))
 	var between := at[0].affine_inverse() * at[1]
 	between.origin *= ipd_scale
-	var views := YoroViews.of(frusta, between, near, far, dominant_eye, pixels, guard_band)
-	if views.trouble != "":
-		_refuse(views.trouble)
+	var levels := YoroLevels.of(frusta, between, near, far, dominant_eye, pixels, guard_band, foveation_strength(),
+			gaze_from(at[dominant_eye]))
+	if levels.trouble != "":
+		_refuse(levels.trouble)
 		return
 	if _is_near():
 		# This is not a fault, so there is no warning.
@@ -240,11 +260,9 @@ func _draw(interface: XRInterface, viewport: Viewport) -> void:
 	_trouble = ""
 	_put.debug_view = debug_view
 	_put.same_image = mode == Mode.SAME_IMAGE
-	_eye.synthesis.map = debug_view == DebugView.HOLES
 	_latch.interface = interface
 	_latch.rendered = dominant_eye
-	_eye.follow(self, viewport, effects(false))
-	_eye.draw(views, at[dominant_eye], near, far)
+	_source.draw(levels, at[dominant_eye], self, viewport, effects(false))
 	_draw_stereo_layers()
 
 
@@ -323,8 +341,8 @@ func _show_layers(layers: int) -> void:
 
 ## Stops drawing the eye from which the other one is synthesized.
 func _rest() -> void:
-	if _eye != null:
-		_eye.rest()
+	if _source != null:
+		_source.rest()
 		_latch_viewport.render_target_update_mode = SubViewport.UPDATE_DISABLED
 
 

@@ -1,4 +1,4 @@
-## The viewport of the rendered eye, which also synthesizes the other one.
+## The viewport of a level of the rendered eye, which also synthesizes the other one's.
 @tool
 class_name YoroEye
 extends SubViewport
@@ -7,7 +7,7 @@ extends SubViewport
 const _OVERRIDES := {glow_enabled = false, adjustment_enabled = false, tonemap_mode = Environment.TONE_MAPPER_LINEAR}
 ## The properties that are copied from the viewport that is shown, since they affect how things are drawn.
 const SHARED: PackedStringArray = [
-	"msaa_3d", "use_occlusion_culling", "mesh_lod_threshold", "positional_shadow_atlas_size", "positional_shadow_atlas_16_bits",
+	"msaa_3d", "use_occlusion_culling", "positional_shadow_atlas_size", "positional_shadow_atlas_16_bits",
 	"positional_shadow_atlas_quad_0", "positional_shadow_atlas_quad_1", "positional_shadow_atlas_quad_2",
 	"positional_shadow_atlas_quad_3", "anisotropic_filtering_level", "texture_mipmap_bias",
 ]
@@ -32,8 +32,8 @@ func _init(passes: YoroPasses) -> void:
 
 
 ## Takes over the settings of the camera [param like], except for what Godot draws for both eyes, and those of the
-## viewport [param shown]. [param effects] are drawn before the synthesis.
-func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect]) -> void:
+## viewport [param shown]. [param effects] are drawn before the synthesis. [param layers] are shown in addition.
+func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect], layers: int) -> void:
 	for name in SHARED:
 		if get(name) != shown.get(name):
 			set(name, shown.get(name))
@@ -42,7 +42,7 @@ func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect
 	_environment.follow(like.shown_environment())
 	camera.environment = _environment.copy
 	camera.attributes = like.attributes
-	show_layers(self, camera, like.cull_mask & ~like.stereo_layers)
+	show_layers(self, camera, like.cull_mask & ~like.stereo_layers | layers)
 	if effects != _effects or camera.compositor.compositor_effects.is_empty():
 		_effects = effects.duplicate()
 		var all := _effects.duplicate()
@@ -68,7 +68,6 @@ static func renew_shadows(of: Viewport) -> void:
 func draw(views: YoroViews, at: Transform3D, near: float, far: float) -> void:
 	if size != views.size / 2:
 		size = views.size / 2
-	synthesis.views = views
 	var f := views.frustum
 	camera.set_frustum((f[2] - f[3]) * near, Vector2(f[0] + f[1], f[2] + f[3]) * 0.5 * near, near, far)
 	camera.global_transform = at

@@ -3,9 +3,9 @@
 class_name YoroPasses
 extends RefCounted
 
-const _SHADERS: PackedStringArray = ["tiles", "spans", "march", "nearest", "put", "grid"]
-## The binding of the only texture that is interpolated; all others are read texel by texel.
-const _INTERPOLATED := 1
+const _SHADERS: PackedStringArray = ["tiles", "spans", "march", "part", "put", "grid"]
+## The bindings of the textures that are interpolated; all others are read texel by texel.
+const _INTERPOLATED: Array[int] = [1, 4]
 
 var device: RenderingDevice
 var _files := {}
@@ -100,7 +100,7 @@ func _bound(shader: String, textures: Array[RID]) -> RID:
 		var uniform := RDUniform.new()
 		uniform.uniform_type = RenderingDevice.UNIFORM_TYPE_SAMPLER_WITH_TEXTURE
 		uniform.binding = i
-		uniform.add_id(_samplers[int(i == _INTERPOLATED)])
+		uniform.add_id(_samplers[int(i in _INTERPOLATED)])
 		uniform.add_id(textures[i])
 		uniforms.append(uniform)
 	return UniformSetCacheRD.get_cache(_shaders[shader], 0, uniforms)

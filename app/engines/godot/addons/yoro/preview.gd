@@ -5,13 +5,13 @@ extends HBoxContainer
 
 ## The distance between the eyes in metres.
 const IPD := 0.063
-## The properties that are copied from the viewport that is shown, since they affect what becomes of a finished picture.
-const _FINISHING: PackedStringArray = ["use_debanding", "screen_space_aa"]
+## The properties that are copied from the viewport that is shown, beside those of the source.
+const _SHOWN: PackedStringArray = ["mesh_lod_threshold", "use_debanding", "screen_space_aa"]
 
 var camera: YoroCamera3D
 ## The left eye's and the right eye's image.
 var eyes: Array[SubViewport] = []
-var source: YoroEye
+var source: YoroSource
 ## Why both eyes are rendered although one could be synthesized, or an empty text.
 var trouble := ""
 var _cameras: Array[Camera3D] = []
@@ -27,13 +27,13 @@ func _init(of: YoroCamera3D) -> void:
 	process_priority = 1001
 	add_theme_constant_override("separation", 0)
 	# Sibling viewports are drawn in this order, so the source comes first.
-	source = YoroEye.new(YoroPasses.new())
+	source = YoroSource.new()
 	add_child(source)
 	for eye in 2:
 		var viewport := SubViewport.new()
 		viewport.gui_disable_input = true
 		var shown := Camera3D.new()
-		var put := YoroPut.new(source.synthesis)
+		var put := YoroPut.new(source)
 		put.eye = eye
 		shown.compositor = Compositor.new()
 		viewport.add_child(shown)
@@ -80,9 +80,10 @@ func _process(_delta: float) -> void:
 	var across := up * eye.x / eye.y
 	var frustum: Array[float] = [-across, across, up, -up]
 	var between := Transform3D(Basis.IDENTITY, Vector3(ipd, 0.0, 0.0))
-	var views := YoroViews.of([frustum, frustum], between, camera.near, camera.far, camera.dominant_eye, eye, camera.guard_band)
-	trouble = views.trouble if camera.mode != YoroCamera3D.Mode.BOTH_VIEWS else ""
-	var both := views.trouble != "" or camera.mode == YoroCamera3D.Mode.BOTH_VIEWS
+	var levels := YoroLevels.of([frustum, frustum], between, camera.near, camera.far, camera.dominant_eye, eye,
+			camera.guard_band, camera.foveation_strength(), camera.gaze_from(camera.get_camera_transform()))
+	trouble = levels.trouble if camera.mode != YoroCamera3D.Mode.BOTH_VIEWS else ""
+	var both := levels.trouble != "" or camera.mode == YoroCamera3D.Mode.BOTH_VIEWS
 	_environment.follow(camera.shown_environment(), camera.cull_mask & camera.stereo_layers != 0)
 	var effects := camera.effects(false)
 	for i in 2:
@@ -91,7 +92,7 @@ func _process(_delta: float) -> void:
 			eyes[i].size = eye
 		if eyes[i].world_3d != camera.get_world_3d():
 			eyes[i].world_3d = camera.get_world_3d()
-		for name in YoroEye.SHARED + _FINISHING:
+		for name in YoroEye.SHARED + _SHOWN:
 			if eyes[i].get(name) != camera.get_viewport().get(name):
 				eyes[i].set(name, camera.get_viewport().get(name))
 		shown.keep_aspect = camera.keep_aspect
@@ -112,6 +113,4 @@ func _process(_delta: float) -> void:
 	if both:
 		source.rest()
 		return
-	source.synthesis.map = camera.debug_view == YoroCamera3D.DebugView.HOLES
-	source.follow(camera, eyes[0], effects)
-	source.draw(views, _cameras[camera.dominant_eye].global_transform, camera.near, camera.far)
+	source.draw(levels, _cameras[camera.dominant_eye].global_transform, camera, eyes[0], effects)

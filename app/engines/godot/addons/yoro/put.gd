@@ -4,7 +4,7 @@
 class_name YoroPut
 extends CompositorEffect
 
-var synthesis: YoroSynthesis
+var source: YoroSource
 ## The eye that a viewport with one view gets: 0 left, 1 right.
 var eye := 0
 ## One of [enum YoroCamera3D.DebugView].
@@ -13,36 +13,52 @@ var debug_view := 0
 var same_image := false
 
 
-func _init(of: YoroSynthesis) -> void:
-	synthesis = of
+func _init(of: YoroSource) -> void:
+	source = of
 	effect_callback_type = EFFECT_CALLBACK_TYPE_PRE_TRANSPARENT
 
 
 func _render_callback(_type: int, data: RenderData) -> void:
 	var buffers := data.get_render_scene_buffers() as RenderSceneBuffersRD
-	if buffers == null or not synthesis.ready:
+	if buffers == null or not source.is_ready():
 		return
-	var views := synthesis.views
 	var multisampled := buffers.get_msaa_3d() != RenderingServer.VIEWPORT_MSAA_DISABLED
 	var two := buffers.get_view_count() > 1
+	var whole := source.levels.whole
 	for view in buffers.get_view_count():
-		var is_rendered := (view if two else eye) == views.rendered or same_image
+		var shown := view if two else eye
+		if same_image:
+			shown = whole.rendered
 		if debug_view == YoroCamera3D.DebugView.SYNTHESIZED:
-			is_rendered = false
-		var push := PackedByteArray()
-		push.resize(32)
-		var corner := Vector2(views.crop) if is_rendered else Vector2.ZERO
-		var pitch := views.covered * Vector2(views.eye_size) / Vector2(buffers.get_internal_size())
-		push.encode_float(0, corner.x)
-		push.encode_float(4, corner.y)
-		push.encode_float(8, pitch.x)
-		push.encode_float(12, pitch.y)
-		push.encode_s32(16, 0 if is_rendered and debug_view == YoroCamera3D.DebugView.HOLES else debug_view)
+			shown = 1 - whole.rendered
+		var is_rendered := shown == whole.rendered
+		var pitch := whole.covered * Vector2(whole.eye_size) / Vector2(buffers.get_internal_size())
+		var debug := 0 if is_rendered and debug_view == YoroCamera3D.DebugView.HOLES else debug_view
 		# The disparity at depth 1, as a share of a tenth of the image's width.
-		push.encode_float(20, views.max_disparity / (0.1 * views.eye_size.x))
-		var color := synthesis.rendered_color if is_rendered else synthesis.synthesized_color
-		var depth := synthesis.rendered_depth if is_rendered else synthesis.synthesized_depth
-		var map := synthesis.source_map if synthesis.source_map.is_valid() else synthesis._tiles
+		var push := PackedFloat32Array([pitch.x, pitch.y, debug, whole.max_disparity / (0.1 * whole.eye_size.x)])
+		push.append_array(_places(shown))
+		push.resize(ceili(push.size() / 4.0) * 4)
+		var textures: Array[RID] = []
+		for level in source.drawn():
+			textures.append_array(level.synthesis.images(is_rendered))
 		# Tested against the depth of what is already drawn. Depth is 1 at the near plane.
-		synthesis.passes.draw("put", [buffers.get_color_layer(view, multisampled), buffers.get_depth_layer(view, multisampled)],
-				[depth, color, map], push, RenderingDevice.COMPARE_OP_GREATER_OR_EQUAL)
+		source.passes.draw("put_whole" if source.levels.inset == null else "put_levels",
+				[buffers.get_color_layer(view, multisampled), buffers.get_depth_layer(view, multisampled)],
+				textures, push.to_byte_array(), RenderingDevice.COMPARE_OP_GREATER_OR_EQUAL)
+
+
+## Returns where an eye lies in its images: what [code]put.glsl[/code] calls [code]corner[/code], and with an inset all
+## that follows.
+func _places(of: int) -> PackedFloat32Array:
+	var levels := source.levels
+	var inset := levels.inset
+	var is_rendered := of == levels.whole.rendered
+	if inset == null:
+		var crop := levels.whole.crop if is_rendered else Vector2i.ZERO
+		return PackedFloat32Array([crop.x, crop.y])
+	var corner := levels.wide_corners[of]
+	var place := levels.places[of]
+	var inset_corner := (inset.crop if is_rendered else Vector2i.ZERO) - place.position
+	var column := Vector3(0.0, 0.5, 0.0) if is_rendered else inset.source_column
+	return PackedFloat32Array([corner.x, corner.y, place.position.x, place.position.y, place.end.x, place.end.y, inset_corner.x, inset_corner.y,
+			column.x, column.y, column.z, levels.whole.pitch / levels.wide.pitch, levels.wide.max_disparity])

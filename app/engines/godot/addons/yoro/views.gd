@@ -24,6 +24,11 @@ var eye_size: Vector2i
 var covered: Vector2
 ## The eye that is rendered: 0 left, 1 right.
 var rendered: int
+## The tangents that a pixel of each image covers.
+var pitch: float
+## Where in the image to render a pixel of the other eye comes from, as a share of its width: X times its column, plus Y,
+## plus Z times its depth.
+var source_column: Vector3
 ## The sizes of the intermediate images.
 var tile_map: Vector2i
 var span_map: Vector2i
@@ -61,7 +66,7 @@ func _fill(frusta: Array, between: Transform3D, near: float, far: float, rendere
 	# Godot's cameras have square pixels, but a headset's need not be square. Take the finer of the headset's two
 	# pitches, so that one axis is not resampled. The image then covers the eye and up to one pixel more.
 	var extent := Vector2(s[1] - s[0], s[2] - s[3])
-	var pitch := minf(extent.x / pixels.x, extent.y / pixels.y)
+	pitch = minf(extent.x / pixels.x, extent.y / pixels.y)
 	var row: float = (t[2] - s[2]) / pitch
 	# Written so that tangents that are not finite fail, too.
 	if not (pitch > 0.0 and extent.distance_to(Vector2(t[1] - t[0], t[2] - t[3])) <= 0.05 * pitch
@@ -105,6 +110,7 @@ func _fill(frusta: Array, between: Transform3D, near: float, far: float, rendere
 	var first := -0.5 if to_left else eye.x - 0.5
 	var across := 16.0 * span_map.x
 	var up := 8.0 * span_map.y
+	source_column = Vector3(sense, (0.0 if to_left else float(eye.x)) - offset, -scale) / size.x
 	uniforms.resize(112)
 	_integers(0, [size.x, size.y, eye.x, eye.y])
 	_floats(16, [offset, scale])
