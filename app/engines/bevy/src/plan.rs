@@ -1,6 +1,11 @@
 //! How the other eye of a camera is produced.
 
+use bevy::core_pipeline::prepass::DeferredPrepass;
 use bevy::ecs::query::QueryData;
+use bevy::pbr::{AtmosphereSettings, ScreenSpaceReflections};
+use bevy::post_process::auto_exposure::AutoExposure;
+use bevy::post_process::effect_stack::{ChromaticAberration, LensDistortion, Vignette};
+use bevy::post_process::motion_blur::MotionBlur;
 use bevy::prelude::*;
 use bevy::render::camera::TemporalJitter;
 
@@ -40,6 +45,20 @@ impl Plan {
 pub(crate) struct Rendering {
     msaa: &'static Msaa,
     jitter: Has<TemporalJitter>,
+    whole: WholeImage,
+}
+
+/// The effects that cannot be made of an image's parts.
+#[derive(QueryData)]
+struct WholeImage {
+    atmosphere: Has<AtmosphereSettings>,
+    auto_exposure: Has<AutoExposure>,
+    chromatic_aberration: Has<ChromaticAberration>,
+    deferred: Has<DeferredPrepass>,
+    lens_distortion: Has<LensDistortion>,
+    motion_blur: Has<MotionBlur>,
+    reflections: Has<ScreenSpaceReflections>,
+    vignette: Has<Vignette>,
 }
 
 impl RenderingItem<'_, '_> {
@@ -60,5 +79,21 @@ impl RenderingItem<'_, '_> {
 
     pub(crate) fn msaa(&self) -> Msaa {
         *self.msaa
+    }
+
+    /// Returns the name of a component that prevents foveation.
+    pub(crate) fn whole_image_effect(&self) -> Option<&'static str> {
+        let whole = &self.whole;
+        let effects = [
+            (whole.atmosphere, "AtmosphereSettings"),
+            (whole.auto_exposure, "AutoExposure"),
+            (whole.chromatic_aberration, "ChromaticAberration"),
+            (whole.reflections, "ScreenSpaceReflections"),
+            (whole.deferred, "DeferredPrepass"),
+            (whole.lens_distortion, "LensDistortion"),
+            (whole.motion_blur, "MotionBlur"),
+            (whole.vignette, "Vignette"),
+        ];
+        effects.into_iter().find_map(|(present, name)| present.then_some(name))
     }
 }
