@@ -15,11 +15,11 @@ use yoro_wgpu::yoro::eyes::{
     self, DepthConvention, DepthRange, EyeOptions, EyePair, GuardBand, Pose, StereoViews, View,
 };
 
+use crate::StereoMode;
 use crate::levels::{Foveation, Views, levels};
-use crate::plan::{Plan, Rendering};
+use crate::plan::{Holes, Plan, Rendering};
 use crate::projection::EyeProjection;
 use crate::shared::{EyeCamera, EyeCameras, Role, ShareSystems};
-use crate::StereoMode;
 
 /// The orders of the cameras that belong to a stereo camera, relative to its own order: by [`Role`], and that of the screen.
 const ORDERS: [isize; 3] = [1, 1, 2];
@@ -60,6 +60,8 @@ pub struct StereoCamera {
     pub mode: StereoMode,
     /// The eye that is rendered.
     pub dominant: Eye,
+    /// What becomes of what near objects hide from the rendered eye.
+    pub holes: Holes,
     /// Fewer pixels where the eyes do not look. `None` for all pixels everywhere.
     pub foveation: Option<Foveation>,
     /// Where the eyes look, as a direction in the camera's axes: it may change in every frame, and nothing is created anew.
@@ -86,6 +88,7 @@ impl Default for StereoCamera {
         StereoCamera {
             mode: StereoMode::default(),
             dominant: Eye::default(),
+            holes: Holes::default(),
             foveation: None,
             gaze: None,
             ipd: eyes::MEAN_IPD,
@@ -136,8 +139,9 @@ pub(crate) struct Eyes {
     size: UVec2,
     /// The head's transform in the world.
     head: Option<GlobalTransform>,
-    /// The reasons why both eyes are rendered although one should be synthesized, and why there is no inset.
-    reasons: [Option<String>; 2],
+    /// The reasons why both eyes are rendered although one should be synthesized, why there is no inset, and why holes are
+    /// filled.
+    reasons: [Option<String>; 3],
 }
 
 /// The images of a level.
@@ -156,8 +160,8 @@ impl Eyes {
     }
 
     /// Keeps the reasons, and logs those that are new.
-    fn explain(&mut self, camera: Entity, reasons: [Option<String>; 2]) {
-        let results = ["both eyes of {} are rendered", "{} has no foveation"];
+    fn explain(&mut self, camera: Entity, reasons: [Option<String>; 3]) {
+        let results = ["both eyes of {} are rendered", "{} has no foveation", "the holes of {} are filled"];
         for ((reason, known), result) in reasons.iter().zip(&self.reasons).zip(results) {
             if let Some(reason) = reason.as_ref().filter(|_| reason != known) {
                 warn!("{}: {reason}", result.replace("{}", &camera.to_string()));
@@ -171,6 +175,7 @@ impl Eyes {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrangement {
     pub(crate) plan: Plan,
+    pub(crate) holes: Holes,
     /// The samples of the cameras that are not synthesized.
     msaa: Msaa,
     format: TextureFormat,
@@ -210,12 +215,13 @@ pub(crate) struct StereoCameraParts {
     camera_3d: &'static mut Camera3d,
     target: &'static mut RenderTarget,
     projection: &'static mut Projection,
-    cameras: &'static mut EyeCameras,
+    pub(crate) cameras: &'static mut EyeCameras,
 }
 
 /// The eyes that a camera should show.
 pub(crate) struct EyesRequest<'a> {
     pub(crate) mode: StereoMode,
+    pub(crate) holes: Holes,
     pub(crate) pair: &'a EyePair,
     pub(crate) foveation: Option<Foveation>,
     pub(crate) gaze: Option<Dir3>,
@@ -282,6 +288,7 @@ fn update_cameras(
         }
         let request = EyesRequest {
             mode: stereo.mode,
+            holes: stereo.holes,
             pair: &stereo.pair([size.x / 2, size.y]),
             foveation: stereo.foveation,
             gaze: stereo.gaze,
@@ -316,7 +323,9 @@ fn follow(
         let Some(views) = &eyes.views else { continue };
         for role in Role::ALL {
             let Some(own) = belonging.get(role) else { continue };
-            let Ok((mut camera, mut projection, mut transform)) = cameras.get_mut(own.entity) else { continue };
+            let Ok((mut camera, mut projection, mut transform)) = cameras.get_mut(own.entity) else {
+                continue;
+            };
             follow_order(&mut camera, stereo, ORDERS[role as usize]);
             if !same_clear_color(camera.clear_color, stereo.clear_color) {
                 camera.clear_color = stereo.clear_color;
@@ -372,7 +381,7 @@ impl StereoCameraPartsItem<'_, '_> {
         images: &mut Assets<Image>,
         request: &EyesRequest,
     ) -> Option<Entity> {
-        let (plan, views) = self.plan(request);
+        let (plan, views, holes) = self.plan(request);
         let source = &views.wide.source;
         (self.eyes.views, self.eyes.far) = (Some(views), request.far);
         EyeProjection::new(source, source.frustum, request.far).replace(&mut self.projection);
@@ -382,6 +391,7 @@ impl StereoCameraPartsItem<'_, '_> {
         }
         let arrangement = Arrangement {
             plan,
+            holes,
             msaa: self.rendering.msaa(),
             format: request.format,
             sizes: views.sizes(),
@@ -418,7 +428,7 @@ impl StereoCameraPartsItem<'_, '_> {
     }
 
     /// Returns what is done for a request, as far as it is possible, and logs what is not.
-    fn plan(&mut self, request: &EyesRequest) -> (Plan, Views) {
+    fn plan(&mut self, request: &EyesRequest) -> (Plan, Views, Holes) {
         let pair = request.pair;
         let effect = self.rendering.whole_image_effect().filter(|_| request.foveation.is_some());
         let (levels, unfoveated) = match effect {
@@ -433,12 +443,15 @@ impl StereoCameraPartsItem<'_, '_> {
             let views = Views::new(&levels, plan, guard).map_err(|error| error.to_string())?;
             Ok((plan, views))
         });
-        let (made, both) = match tried {
+        let ((plan, views), both) = match tried {
             Ok(made) => (made, None),
             Err(reason) => ((Plan::Rendered, Views::rendered(&levels)), Some(reason)),
         };
-        self.eyes.explain(self.entity, [both, unfoveated]);
-        made
+        let wanted = request.holes == Holes::Rendered && plan == Plan::Opaque;
+        let filled = self.rendering.filled_holes().filter(|_| wanted).map(String::from);
+        let holes = if wanted && filled.is_none() { Holes::Rendered } else { Holes::Filled };
+        self.eyes.explain(self.entity, [both, unfoveated, filled]);
+        (plan, views, holes)
     }
 
     /// Returns the camera for a role, if there is something to draw: the one that has it, or a new one.
@@ -449,21 +462,20 @@ impl StereoCameraPartsItem<'_, '_> {
         views: &Views,
         own_image: bool,
     ) -> Option<EyeCamera> {
-        let plan = self.eyes.arrangement?.plan;
-        let rendered = plan == Plan::Rendered || matches!(role, Role::Inset);
-        let wanted = views.of(role).filter(|_| plan.has_other_camera() || matches!(role, Role::Inset));
+        let Arrangement { plan, holes, .. } = self.eyes.arrangement?;
+        let opens = holes == Holes::Rendered && role == views.detailed();
+        let opaque = plan == Plan::Rendered || role == Role::Inset || opens;
+        let wanted = views.of(role).filter(|_| plan.has_other_camera() || role == Role::Inset);
         let old = self.cameras.get(role);
-        let kept = old.filter(|old| wanted.is_some() && old.rendered == rendered && old.owned == own_image);
+        let kept = old.filter(|old| wanted.is_some() && old.opaque == opaque && old.owned == own_image);
         if let (Some(old), None) = (old, kept) {
             commands.entity(old.entity).try_despawn();
         }
         let (view, whole) = wanted?;
         let camera_3d = Camera3d { depth_texture_usages: self.camera_3d.depth_texture_usages, ..default() };
-        let entity = kept.map_or_else(
-            || commands.spawn((camera_3d, ChildOf(self.entity))).id(),
-            |kept| kept.entity,
-        );
-        commands.entity(entity).try_insert(if rendered { self.rendering.msaa() } else { Msaa::Off });
+        let entity =
+            kept.map_or_else(|| commands.spawn((camera_3d, ChildOf(self.entity))).id(), |kept| kept.entity);
+        commands.entity(entity).try_insert(if opaque { self.rendering.msaa() } else { Msaa::Off });
         if own_image {
             let [wide, inset] = &self.eyes.images;
             let image = match role {
@@ -475,7 +487,7 @@ impl StereoCameraPartsItem<'_, '_> {
             commands.entity(entity).try_insert((RenderTarget::Image(image.clone().into()), projection));
         }
         let height = view.frustum.height() / whole.frustum.height();
-        Some(EyeCamera { entity, rendered, owned: own_image, height })
+        Some(EyeCamera { entity, opaque, owned: own_image, height })
     }
 }
 

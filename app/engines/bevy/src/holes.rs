@@ -36,7 +36,7 @@ pub(crate) struct HolePasses {
 }
 
 /// Makes the depth of eyes that are new or have another size.
-pub(crate) fn prepare(
+pub(crate) fn prepare_holes(
     mut commands: Commands,
     device: Res<RenderDevice>,
     passes: Res<HolePasses>,
@@ -85,8 +85,12 @@ impl FromWorld for HolePasses {
 
 impl HolePasses {
     /// True if the device has the format of marked depth.
-    pub(crate) fn are_supported(device: &wgpu::Device) -> bool {
-        device.features().contains(wgpu::Features::DEPTH32FLOAT_STENCIL8)
+    pub(crate) fn are_supported(device: &RenderDevice) -> bool {
+        let supported = device.features().contains(wgpu::Features::DEPTH32FLOAT_STENCIL8);
+        if !supported {
+            warn_once!("holes are filled: the device has no {MARKED_DEPTH:?}");
+        }
+        supported
     }
 
     fn marked_depth(&self, device: &wgpu::Device, size: UVec2) -> MarkedDepth {
@@ -103,8 +107,10 @@ impl HolePasses {
         });
         let aspect = |aspect| texture.create_view(&wgpu::TextureViewDescriptor { aspect, ..default() });
         let [depth, marks] = [wgpu::TextureAspect::DepthOnly, wgpu::TextureAspect::StencilOnly].map(aspect);
-        let entry =
-            |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+        let entry = |binding, view| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::TextureView(view),
+        };
         let entries = [entry(0, &depth), entry(1, &marks)];
         let descriptor = wgpu::BindGroupDescriptor { label, layout: &self.layout, entries: &entries };
         let group = device.create_bind_group(&descriptor);

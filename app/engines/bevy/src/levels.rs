@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use yoro_wgpu::yoro::eyes::{
-    self, Composition, Eye, EyePair, EyesError, Gaze, GuardBand, StereoViews,
-    SynthesisViews, View, ViewLayer, Warp,
+    self, Composition, Eye, EyePair, EyesError, Gaze, GuardBand, StereoViews, SynthesisViews, View,
+    ViewLayer, Warp,
 };
 use yoro_wgpu::yoro::glam;
 
@@ -106,6 +106,11 @@ impl Views {
         }
     }
 
+    /// Returns the role of the camera of the other eye that has all pixels.
+    pub(crate) fn detailed(&self) -> Role {
+        if self.inset.is_some() { Role::OtherInset } else { Role::Other }
+    }
+
     /// Returns the sizes of each level's source and target.
     pub(crate) fn sizes(&self) -> [Option<[[u32; 2]; 2]>; 2] {
         [Some(self.wide.sizes()), self.inset.map(|inset| inset.views.sizes())]
@@ -142,8 +147,12 @@ pub(crate) fn levels(
     foveation: Option<Foveation>,
     gaze: Option<Dir3>,
 ) -> Result<StereoViews, EyesError> {
-    let foveation = foveation
-        .map(|Foveation { radius, density, nearest }| eyes::Foveation { radius, density, nearest, fade: 0.0 });
+    let foveation = foveation.map(|Foveation { radius, density, nearest }| eyes::Foveation {
+        radius,
+        density,
+        nearest,
+        fade: 0.0,
+    });
     let orientation = pair.poses[pair.dominant.index()].orientation;
     let gaze = gaze.map_or(Gaze::Axes(pair.axes()), |gaze| {
         Gaze::Direction(orientation * glam::Vec3::from_array(gaze.to_array()))

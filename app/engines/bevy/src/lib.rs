@@ -30,6 +30,7 @@
 //! bevy_mod_openxr.
 
 mod camera;
+mod holes;
 mod levels;
 #[cfg(feature = "openxr")]
 pub mod openxr;
@@ -42,7 +43,7 @@ use bevy::prelude::*;
 
 pub use camera::{Eye, StereoCamera};
 pub use levels::Foveation;
-pub use plan::StereoMode;
+pub use plan::{Holes, StereoMode};
 pub use shared::ShareComponent;
 pub use yoro_wgpu;
 

@@ -39,8 +39,8 @@ use crate::camera::{Eyes, EyesRequest, StereoCameraParts, bevy_transform, guard_
 use crate::levels::{Foveation, LevelViews, Views, levels};
 use crate::passes::{Levels, Place, ShownEyes, Stereo};
 use crate::projection::clip_from_view;
-use crate::shared::{EyeCameras, ShareSystems};
-use crate::{Eye, StereoMode};
+use crate::shared::{EyeCameras, Role, ShareSystems};
+use crate::{Eye, Holes, StereoMode};
 
 /// Renders stereo in the headset from this `Camera3d`. The runtime's views determine the eyes' poses and frusta. The
 /// plugin controls the camera's transform, projection and render target. The camera renders while a session does.
@@ -53,6 +53,8 @@ pub struct XrStereoCamera {
     pub mode: StereoMode,
     /// The eye that is rendered.
     pub dominant: Eye,
+    /// What becomes of what near objects hide from the rendered eye.
+    pub holes: Holes,
     /// Fewer pixels where the eyes do not look. `None` for all pixels everywhere.
     pub foveation: Option<Foveation>,
     /// Where the eyes look, as a direction in the camera's axes: it may change in every frame, and nothing is created anew.
@@ -74,6 +76,7 @@ impl Default for XrStereoCamera {
         XrStereoCamera {
             mode: StereoMode::default(),
             dominant: Eye::default(),
+            holes: Holes::default(),
             foveation: None,
             gaze: None,
             near: 0.1,
@@ -97,9 +100,7 @@ impl XrStereoCamera {
             dominant: self.dominant.into(),
         })
     }
-}
 
-impl XrStereoCamera {
     /// Returns the newest views, unless their images would have other sizes than those that were arranged for.
     fn newest_views(
         &self,
@@ -111,7 +112,8 @@ impl XrStereoCamera {
         let arranged = |camera| sources.get(camera).ok();
         let wide = arranged(shown.wide)?;
         let inset = shown.inset.as_ref().and_then(|inset| arranged(inset.camera));
-        let levels = levels(&self.pair(views, config)?, self.foveation.filter(|_| inset.is_some()), self.gaze);
+        let levels =
+            levels(&self.pair(views, config)?, self.foveation.filter(|_| inset.is_some()), self.gaze);
         let newest = Views::new(&levels.ok()?, wide.plan, guard_band(self.guard_distance)).ok()?;
         let sizes = [Some(wide), inset].map(|level| level.map(|level| level.views.sizes()));
         Some(newest).filter(|newest| newest.sizes() == sizes)
@@ -159,6 +161,7 @@ fn update_cameras(
     frame: Res<OxrFrameState>,
     mut images: ResMut<Assets<Image>>,
     mut cameras: Query<(&XrStereoCamera, &mut Transform, StereoCameraParts)>,
+    mut layers: Query<&mut XrCamera>,
 ) {
     for (stereo, mut transform, mut parts) in &mut cameras {
         let pair = stereo.pair(&views, &config);
@@ -169,6 +172,7 @@ fn update_cameras(
         let Some(pair) = pair else { continue };
         let request = EyesRequest {
             mode: stereo.mode,
+            holes: stereo.holes,
             pair: &pair,
             foveation: stereo.foveation,
             gaze: stereo.gaze,
@@ -181,8 +185,12 @@ fn update_cameras(
         let Some(views) = parts.eyes.views else { continue };
         let source = views.wide.source.pose;
         (*transform, parts.eyes.origin) = (bevy_transform(&source), Some(source));
+        let index = pair.dominant.other().index() as u32;
+        let other = parts.cameras.get(Role::Other);
+        if let Some(mut layer) = other.and_then(|other| layers.get_mut(other.entity).ok()) {
+            layer.0 = index;
+        }
         if let Some(other) = new {
-            let index = pair.dominant.other().index() as u32;
             commands.entity(other).insert((
                 XrCamera(index),
                 Projection::custom(XrProjection { near: stereo.near, ..default() }),

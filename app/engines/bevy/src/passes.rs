@@ -15,26 +15,29 @@ use bevy::render::renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, ViewDepthTexture, ViewTarget};
-use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderSystems};
+use bevy::render::{Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderSystems};
 use yoro_wgpu::yoro::eyes::{Composition, DepthConvention, Eye, Warp};
+use yoro_wgpu::yoro::synthesis::{self, HoleMark};
 use yoro_wgpu::{
     Composer, Gather, InsetImage, LevelImage, LevelImages, NearestDepth, Options, Source, Target, WgpuError,
     wgpu,
 };
 
 use crate::camera::Eyes;
+use crate::holes::{HolePasses, MARKED_DEPTH, MarkedDepth, RendersHoles, prepare_holes, restore_depth};
 use crate::levels::{LevelViews, Views};
-use crate::plan::Plan;
+use crate::plan::{Holes, Plan};
 use crate::shared::{EyeCameras, Role};
 
 pub(crate) fn build(app: &mut App) {
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
     render
         .init_resource::<Pipelines>()
+        .init_gpu_resource::<HolePasses>()
         .add_systems(ExtractSchedule, extract)
         .add_systems(
             Render,
-            leave_out_opaque
+            (leave_out_opaque, prepare_holes)
                 .in_set(RenderSystems::Prepare)
                 // Bevy creates the texture for transmission only for views that have all phases.
                 .after(RenderSystems::PrepareResources)
@@ -43,6 +46,14 @@ pub(crate) fn build(app: &mut App) {
         .add_systems(
             Core3d,
             synthesize_opaque
+                .after(main_opaque_pass_3d)
+                .before(main_transmissive_pass_3d)
+                .before(main_transparent_pass_3d)
+                .in_set(Core3dSystems::MainPass),
+        )
+        .add_systems(
+            Core3d,
+            restore_depth
                 .after(main_opaque_pass_3d)
                 .before(main_transmissive_pass_3d)
                 .before(main_transparent_pass_3d)
@@ -89,10 +100,11 @@ fn extract(
     mut commands: Commands,
     cameras: Extract<Query<(RenderEntity, &Camera, &Eyes, &EyeCameras)>>,
     entities: Extract<Query<RenderEntity>>,
-    old: Query<Entity, Or<(With<Stereo>, With<ShownEyes>)>>,
+    device: Res<RenderDevice>,
+    old: Query<Entity, Or<(With<Stereo>, With<ShownEyes>, With<RendersHoles>)>>,
 ) {
     for entity in &old {
-        commands.entity(entity).remove::<(Stereo, ShownEyes)>();
+        commands.entity(entity).remove::<(Stereo, ShownEyes, RendersHoles)>();
     }
     for (wide, camera, eyes, belonging) in &cameras {
         let (Some(arrangement), Some(views)) = (eyes.arrangement, eyes.views) else { continue };
@@ -103,8 +115,14 @@ fn extract(
         let rendered = |entity| entities.get(entity).ok();
         let camera = |role| belonging.get(role).and_then(|camera| rendered(camera.entity));
         let others = [Role::Other, Role::OtherInset].map(camera);
-        for other in others.into_iter().flatten().filter(|_| plan == Plan::Opaque) {
-            commands.entity(other).insert(Synthesized);
+        for (other, role) in others.into_iter().zip([Role::Other, Role::OtherInset]) {
+            let Some(other) = other.filter(|_| plan == Plan::Opaque) else { continue };
+            let opens = arrangement.holes == Holes::Rendered && role == views.detailed();
+            if opens && HolePasses::are_supported(&device) {
+                commands.entity(other).insert(RendersHoles);
+            } else {
+                commands.entity(other).insert(Synthesized);
+            }
         }
         let stereo = |level: usize, views: LevelViews| Stereo {
             plan,
@@ -237,25 +255,37 @@ fn log_once(error: &WgpuError) {
 /// Draws the opaque surfaces of the other eye, which its own camera leaves out.
 fn synthesize_opaque(
     view: ViewQuery<(&Stereo, &ViewTarget, &ViewDepthTexture)>,
-    others: Query<(&ViewTarget, &ViewDepthTexture)>,
+    others: Query<(&ViewTarget, &ViewDepthTexture, Option<&MarkedDepth>)>,
+    mut holes: ResMut<HolePasses>,
     mut synthesis: Synthesis,
 ) {
     let (stereo, source_color, source_depth) = view.into_inner();
     let (Plan::Opaque, Some(warp)) = (stereo.plan, &stereo.views.warp) else { return };
-    let Some((color, depth)) = stereo.other_camera.and_then(|camera| others.get(camera).ok()) else {
+    let Some((color, depth, marked)) = stereo.other_camera.and_then(|camera| others.get(camera).ok()) else {
         return;
     };
     // Requesting the attachments for the first time clears them. This must happen here, so that later passes do not
     // clear them.
     let color_attachment = color.get_unsampled_color_attachment();
     drop(depth.get_attachment(StoreOp::Store));
+    let holes_left =
+        if marked.is_some() { synthesis::Holes::Open(HoleMark::Stencil) } else { synthesis::Holes::Filled };
     let options = Options {
         color_format: color.main_texture_format(),
-        depth_format: Some(CORE_3D_DEPTH_FORMAT),
-        ..Options::default()
+        depth_format: Some(if marked.is_some() { MARKED_DEPTH } else { CORE_3D_DEPTH_FORMAT }),
+        holes: holes_left,
     };
-    let target = Target { color: color_attachment.view, depth: Some(depth.view()), origin: [0, 0] };
+    let view = marked.map_or(&**depth.view(), |marked| &marked.view);
+    let target = Target { color: color_attachment.view, depth: Some(view), origin: [0, 0] };
     synthesis.record(&options, source_color.main_texture_view(), source_depth, warp, &target);
+    if let Some(marked) = marked {
+        let background = match color_attachment.ops.load {
+            wgpu::LoadOp::Clear(color) => color,
+            _ => wgpu::Color::TRANSPARENT,
+        };
+        let (device, encoder) = (synthesis.device.wgpu_device(), synthesis.context.command_encoder());
+        holes.open(device, encoder, marked, background, [color_attachment.view, depth.view()]);
+    }
 }
 
 /// Shows both eyes side by side.
@@ -338,7 +368,9 @@ impl Levels<'_, '_> {
                 let origin = if own { level.views.crop } else { [0, 0] };
                 Some(LevelImage { color: &images.get(image)?.texture_view, origin })
             };
-            let (Some(place), Some(wide), Some(image)) = (place(eye), image(wide), image(near)) else { continue };
+            let (Some(place), Some(wide), Some(image)) = (place(eye), image(wide), image(near)) else {
+                continue;
+            };
             // Of an inset that is synthesized after post-processing, no depth is written.
             let synthesized = near.other_camera.filter(|_| !own && near.plan == Plan::Opaque);
             let depth = synthesized.and_then(|camera| depths.get(camera).ok());

@@ -1,6 +1,6 @@
 //! How the other eye of a camera is produced.
 
-use bevy::core_pipeline::prepass::DeferredPrepass;
+use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, NormalPrepass};
 use bevy::ecs::query::QueryData;
 use bevy::pbr::{AtmosphereSettings, ScreenSpaceReflections};
 use bevy::post_process::auto_exposure::AutoExposure;
@@ -25,6 +25,20 @@ pub enum StereoMode {
     Rendered,
 }
 
+/// What becomes of what near objects hide from the rendered eye, in [`StereoMode::Opaque`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Debug, PartialEq, Hash, Clone)]
+pub enum Holes {
+    /// It is filled with what lies around it.
+    #[default]
+    Filled,
+    /// The other eye's camera renders it: opaque objects and the sky box are drawn a second time, where nothing was
+    /// synthesized, with the materials as they are. They must test depth. Of foveated eyes this is the inset's. Holes are
+    /// filled, and one line in the log says so, with MSAA, prepasses (`ScreenSpaceAmbientOcclusion` has two), and on devices
+    /// without `DEPTH32FLOAT_STENCIL8`.
+    Rendered,
+}
+
 /// What is actually done: the mode, as far as the camera's other components allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Plan {
@@ -45,6 +59,7 @@ impl Plan {
 pub(crate) struct Rendering {
     msaa: &'static Msaa,
     jitter: Has<TemporalJitter>,
+    prepasses: (Has<DepthPrepass>, Has<NormalPrepass>),
     whole: WholeImage,
 }
 
@@ -79,6 +94,15 @@ impl RenderingItem<'_, '_> {
 
     pub(crate) fn msaa(&self) -> Msaa {
         *self.msaa
+    }
+
+    /// Returns the reason why holes cannot be rendered.
+    pub(crate) fn filled_holes(&self) -> Option<&'static str> {
+        match self.prepasses {
+            _ if *self.msaa != Msaa::Off => Some("their pixels would have one sample; use Msaa::Off"),
+            (false, false) => None,
+            _ => Some("a prepass would draw whole objects once more"),
+        }
     }
 
     /// Returns the name of a component that prevents foveation.

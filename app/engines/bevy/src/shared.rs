@@ -21,7 +21,7 @@ use bevy::render::view::ColorGrading;
 pub(crate) struct EyeCameras(pub(crate) [Option<EyeCamera>; 3]);
 
 /// What a camera that belongs to a stereo camera draws.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     /// The other eye's wide level.
     Other,
@@ -40,7 +40,7 @@ impl Role {
 pub(crate) struct EyeCamera {
     pub(crate) entity: Entity,
     /// False if the camera draws only what is not synthesized.
-    pub(crate) rendered: bool,
+    pub(crate) opaque: bool,
     /// False if its target and projection are bevy_mod_openxr's.
     pub(crate) owned: bool,
     /// The part of the eye's height that it shows.
@@ -124,7 +124,7 @@ fn share<C: Component + Clone, const SYNTHESIZED: bool>(
     others: Query<&EyeCameras, Without<C>>,
 ) {
     for (cameras, component) in &changed {
-        for camera in cameras.iter().filter(|camera| SYNTHESIZED || camera.rendered) {
+        for camera in cameras.iter().filter(|camera| SYNTHESIZED || camera.opaque) {
             commands.entity(camera.entity).try_insert(component.clone());
         }
     }
@@ -143,7 +143,8 @@ fn fit_bloom(
     for (cameras, bloom) in &changed {
         for camera in cameras.iter() {
             if let Ok(mut own) = blooms.get_mut(camera.entity) {
-                own.max_mip_dimension = (bloom.max_mip_dimension as f32 * camera.height).round().max(4.0) as u32;
+                own.max_mip_dimension =
+                    (bloom.max_mip_dimension as f32 * camera.height).round().max(4.0) as u32;
             }
         }
     }

@@ -109,7 +109,8 @@ pub fn headless() -> App {
         synchronous_pipeline_compilation: true,
         ..default()
     };
-    app.add_plugins((windowless().set(rendering), RenderDiagnosticsPlugin, YoroPlugin)).add_systems(Startup, room);
+    app.add_plugins((windowless().set(rendering), RenderDiagnosticsPlugin, YoroPlugin))
+        .add_systems(Startup, room);
     finish(&mut app);
     app
 }
