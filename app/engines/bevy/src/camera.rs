@@ -486,8 +486,7 @@ impl StereoCameraPartsItem<'_, '_> {
             let projection = Projection::custom(EyeProjection::new(view, whole.frustum, self.eyes.far));
             commands.entity(entity).try_insert((RenderTarget::Image(image.clone().into()), projection));
         }
-        let height = view.frustum.height() / whole.frustum.height();
-        Some(EyeCamera { entity, opaque, owned: own_image, height })
+        Some(EyeCamera { entity, opaque, owned: own_image })
     }
 }
 

@@ -13,10 +13,10 @@ use crate::shared::Role;
 /// Foveation: a wide level has fewer pixels, an inset around the gaze all of them. Each is rendered, synthesized and
 /// post-processed by itself, and the eyes are composed last. Both eyes have an inset of one size.
 ///
-/// Whatever is measured in pixels, such as the width of gizmos, is larger in the wide level. Bloom spreads as far in both
-/// levels, but does not cross their border. Effects that need a whole image prevent foveation, and one line in the log
-/// says so: `AtmosphereSettings`, `AutoExposure`, `ChromaticAberration`, `DeferredPrepass`, `LensDistortion`,
-/// `MotionBlur`, `ScreenSpaceReflections` and `Vignette`.
+/// Whatever is measured in pixels, such as the width of gizmos, is larger in the wide level. Effects that cannot be made of
+/// an image's parts prevent foveation, and one line in the log says so: `AtmosphereSettings`, `AutoExposure`, `Bloom`
+/// (light from beyond the inset's border, without which the border is seen), `ChromaticAberration`, `DeferredPrepass`,
+/// `LensDistortion`, `MotionBlur`, `ScreenSpaceReflections` and `Vignette`.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub struct Foveation {

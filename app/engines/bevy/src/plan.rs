@@ -4,6 +4,7 @@ use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, NormalPrepass}
 use bevy::ecs::query::QueryData;
 use bevy::pbr::{AtmosphereSettings, ScreenSpaceReflections};
 use bevy::post_process::auto_exposure::AutoExposure;
+use bevy::post_process::bloom::Bloom;
 use bevy::post_process::effect_stack::{ChromaticAberration, LensDistortion, Vignette};
 use bevy::post_process::motion_blur::MotionBlur;
 use bevy::prelude::*;
@@ -68,6 +69,7 @@ pub(crate) struct Rendering {
 struct WholeImage {
     atmosphere: Has<AtmosphereSettings>,
     auto_exposure: Has<AutoExposure>,
+    bloom: Has<Bloom>,
     chromatic_aberration: Has<ChromaticAberration>,
     deferred: Has<DeferredPrepass>,
     lens_distortion: Has<LensDistortion>,
@@ -111,6 +113,7 @@ impl RenderingItem<'_, '_> {
         let effects = [
             (whole.atmosphere, "AtmosphereSettings"),
             (whole.auto_exposure, "AutoExposure"),
+            (whole.bloom, "Bloom"),
             (whole.chromatic_aberration, "ChromaticAberration"),
             (whole.reflections, "ScreenSpaceReflections"),
             (whole.deferred, "DeferredPrepass"),

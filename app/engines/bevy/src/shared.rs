@@ -43,8 +43,6 @@ pub(crate) struct EyeCamera {
     pub(crate) opaque: bool,
     /// False if its target and projection are bevy_mod_openxr's.
     pub(crate) owned: bool,
-    /// The part of the eye's height that it shows.
-    pub(crate) height: f32,
 }
 
 impl EyeCameras {
@@ -81,6 +79,7 @@ pub(crate) struct ShareSystems;
 
 pub(crate) fn build(app: &mut App) {
     app.share_with_other_eye::<AmbientLight>()
+        .share_with_other_eye::<Bloom>()
         .share_with_other_eye::<ChromaticAberration>()
         .share_with_other_eye::<ColorGrading>()
         .share_with_other_eye::<CompositingSpace>()
@@ -106,7 +105,6 @@ pub(crate) fn build(app: &mut App) {
         .add_systems(
             PostUpdate,
             (
-                (share::<Bloom, true>, fit_bloom).chain(),
                 share::<ScreenSpaceAmbientOcclusion, false>,
                 share::<Skybox, false>,
                 share::<TemporalAntiAliasing, false>,
@@ -131,21 +129,6 @@ fn share<C: Component + Clone, const SYNTHESIZED: bool>(
     for cameras in removed.read().filter_map(|camera| others.get(camera).ok()) {
         for camera in cameras.iter() {
             commands.entity(camera.entity).try_remove::<C>();
-        }
-    }
-}
-
-/// Makes bloom spread as far in an inset as in the eye: its blur is measured in parts of the image's height.
-fn fit_bloom(
-    changed: Query<(&EyeCameras, &Bloom), Or<(Changed<Bloom>, Changed<EyeCameras>)>>,
-    mut blooms: Query<&mut Bloom, Without<EyeCameras>>,
-) {
-    for (cameras, bloom) in &changed {
-        for camera in cameras.iter() {
-            if let Ok(mut own) = blooms.get_mut(camera.entity) {
-                own.max_mip_dimension =
-                    (bloom.max_mip_dimension as f32 * camera.height).round().max(4.0) as u32;
-            }
         }
     }
 }
