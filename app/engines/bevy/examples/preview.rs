@@ -1,12 +1,12 @@
 //! A room in both eyes, side by side in a window.
 //!
-//! Holding the space bar shows two rendered eyes. M changes how the other eye is produced, D changes which eye is
-//! rendered, and the arrow keys move the head.
+//! Holding the space bar shows two rendered eyes. M changes how the other eye is produced, D which eye is rendered, F
+//! foveation, and the arrow keys move the head.
 
 mod support;
 
 use bevy::prelude::*;
-use bevy_yoro::{Eye, StereoCamera, StereoMode, YoroPlugin};
+use bevy_yoro::{Eye, Foveation, StereoCamera, StereoMode, YoroPlugin};
 
 fn main() -> AppExit {
     App::new()
@@ -47,7 +47,11 @@ fn choose(
             Eye::Right => Eye::Left,
         };
     }
-    let title = format!("{:?}, {:?} eye rendered", stereo.mode, stereo.dominant);
+    if keys.just_pressed(KeyCode::KeyF) {
+        stereo.foveation = if stereo.foveation.is_some() { None } else { Some(Foveation::MEDIUM) };
+    }
+    let level = if stereo.foveation.is_some() { ", foveated" } else { "" };
+    let title = format!("{:?}, {:?} eye rendered{level}", stereo.mode, stereo.dominant);
     if window.title != title {
         window.title = title;
     }

@@ -12,17 +12,18 @@ use bevy::render::render_resource::{TextureFormat, TextureUsages};
 use bevy::render::texture::ManualTextureViews;
 use bevy::window::PrimaryWindow;
 use yoro_wgpu::yoro::eyes::{
-    self, DepthConvention, DepthRange, EyeOptions, EyePair, GuardBand, Pose, View, Warp,
+    self, DepthConvention, DepthRange, EyeOptions, EyePair, GuardBand, Pose, StereoViews, View,
 };
 
 use crate::StereoMode;
-use crate::plan::{Plan, Rendering};
+use crate::levels::{Foveation, Views, levels};
+use crate::plan::{Holes, Plan, Rendering};
 use crate::projection::EyeProjection;
-use crate::shared::{OtherCamera, ShareSystems};
+use crate::shared::{EyeCamera, EyeCameras, Role, ShareSystems};
 
-/// The orders of the cameras that belong to a stereo camera, relative to its own order.
-const OTHER_EYE_ORDER: isize = 1;
-const SCREEN_ORDER: isize = 2;
+/// The orders of the cameras that belong to a stereo camera, relative to its own order: by [`Role`], and that of the screen.
+const ORDERS: [isize; 3] = [1, 1, 2];
+const SCREEN_ORDER: isize = 3;
 
 /// One of the two eyes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
@@ -53,12 +54,19 @@ impl From<Eye> for eyes::Eye {
 /// the component is removed, the camera gets its target back, and a perspective projection.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[require(Camera3d, Eyes)]
+#[require(Camera3d, Eyes, EyeCameras)]
 pub struct StereoCamera {
     /// How the other eye is produced.
     pub mode: StereoMode,
     /// The eye that is rendered.
     pub dominant: Eye,
+    /// What becomes of what near objects hide from the rendered eye.
+    pub holes: Holes,
+    /// Fewer pixels where the eyes do not look. `None` for all pixels everywhere.
+    pub foveation: Option<Foveation>,
+    /// Where the eyes look, as a direction in the camera's axes: it may change in every frame, and nothing is created anew.
+    /// `None` for straight ahead.
+    pub gaze: Option<Dir3>,
     /// Distance between the eyes.
     pub ipd: f32,
     /// Vertical field of view of each eye in radians.
@@ -73,13 +81,16 @@ pub struct StereoCamera {
 }
 
 impl Default for StereoCamera {
-    /// Synthesizes opaque surfaces, renders the right eye, and uses an IPD of 63 mm, the field of view and planes of
-    /// Bevy's perspective projection, and a guard band for objects at 1 m or farther.
+    /// Synthesizes opaque surfaces, renders the right eye with all pixels, and uses an IPD of 63 mm, the field of view and
+    /// planes of Bevy's perspective projection, and a guard band for objects at 1 m or farther.
     fn default() -> StereoCamera {
         let PerspectiveProjection { fov, near, far, .. } = PerspectiveProjection::default();
         StereoCamera {
             mode: StereoMode::default(),
             dominant: Eye::default(),
+            holes: Holes::default(),
+            foveation: None,
+            gaze: None,
             ipd: eyes::MEAN_IPD,
             fov_y: fov,
             near,
@@ -116,86 +127,73 @@ pub(crate) struct Eyes {
     pub(crate) arrangement: Option<Arrangement>,
     /// The views of this frame.
     pub(crate) views: Option<Views>,
-    /// The image that the camera renders the widened view to.
-    pub(crate) source: Handle<Image>,
-    /// The image that the other eye's camera renders to.
-    pub(crate) other: Handle<Image>,
+    /// The images of the wide level and of the inset.
+    pub(crate) images: [EyeImages; 2],
+    /// The pose among the views that the camera's `Transform` has, if it is not the head's.
+    pub(crate) origin: Option<Pose>,
+    far: f32,
     /// The camera that shows both eyes.
-    screen: Option<Entity>,
+    pub(crate) screen: Option<Entity>,
     /// The camera's original render target, and its size in pixels as the screen knows it.
     output: Option<RenderTarget>,
     size: UVec2,
     /// The head's transform in the world.
     head: Option<GlobalTransform>,
-    /// The reason why both eyes are rendered although one should be synthesized.
-    reason: Option<String>,
+    /// The reasons why both eyes are rendered although one should be synthesized, why there is no inset, and why holes are
+    /// filled.
+    reasons: [Option<String>; 3],
+}
+
+/// The images of a level.
+#[derive(Default)]
+pub(crate) struct EyeImages {
+    /// The image that the widened view is rendered to.
+    pub(crate) source: Handle<Image>,
+    /// The other eye's image, if it has one of its own.
+    pub(crate) other: Option<Handle<Image>>,
 }
 
 impl Eyes {
     /// True if this target is the image for the widened view.
     fn renders_to(&self, target: &RenderTarget) -> bool {
-        matches!(target, RenderTarget::Image(to) if to.handle == self.source)
+        matches!(target, RenderTarget::Image(to) if to.handle == self.images[0].source)
+    }
+
+    /// Keeps the reasons, and logs those that are new.
+    fn explain(&mut self, camera: Entity, reasons: [Option<String>; 3]) {
+        let results = ["both eyes of {} are rendered", "{} has no foveation", "the holes of {} are filled"];
+        for ((reason, known), result) in reasons.iter().zip(&self.reasons).zip(results) {
+            if let Some(reason) = reason.as_ref().filter(|_| reason != known) {
+                warn!("{}: {reason}", result.replace("{}", &camera.to_string()));
+            }
+        }
+        self.reasons = reasons;
     }
 }
 
-/// Everything that requires new images, projections or cameras when it changes.
+/// Everything that requires new images or cameras when it changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrangement {
     pub(crate) plan: Plan,
-    /// The samples of the other eye's camera if both eyes are rendered.
+    pub(crate) holes: Holes,
+    /// The samples of the cameras that are not synthesized.
     msaa: Msaa,
     format: TextureFormat,
-    /// The views of the two eyes, without their poses.
-    views: [View; 2],
-    far: f32,
+    /// The sizes of each level's source and target.
+    sizes: [Option<[[u32; 2]; 2]>; 2],
 }
-
-/// The views of the two eyes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Views {
-    /// The view that the camera renders: the dominant eye's, widened unless both eyes are rendered.
-    pub(crate) source: View,
-    /// The view of the other eye.
-    pub(crate) target: View,
-    /// Upper left corner, in pixels, of the dominant eye's own image in the source.
-    pub(crate) crop: [u32; 2],
-    pub(crate) dominant: eyes::Eye,
-    /// `None` if both eyes are rendered.
-    pub(crate) warp: Option<Warp>,
-}
-
-impl Views {
-    /// Returns the views if both eyes are rendered.
-    pub(crate) fn rendered(pair: &EyePair) -> Views {
-        let dominant = pair.dominant;
-        let (source, target) = (pair.view(dominant), pair.view(dominant.other()));
-        Views { source, target, crop: [0, 0], dominant, warp: None }
-    }
-
-    /// Returns the views for a plan.
-    ///
-    /// # Errors
-    /// The reason why the other eye cannot be synthesized from these eyes.
-    pub(crate) fn new(pair: &EyePair, plan: Plan, guard: GuardBand) -> Result<Views, eyes::EyesError> {
-        if plan == Plan::Rendered {
-            return Ok(Views::rendered(pair));
-        }
-        let dominant = pair.dominant;
-        let views = pair.synthesis_views(guard)?;
-        let crop = views.dominant_crop_from_top();
-        Ok(Views { source: views.source, target: views.target, crop, dominant, warp: Some(views.warp) })
-    }
-}
-
-/// The stereo camera whose eyes are shown, on the camera that shows them.
-#[derive(Component, Clone, Copy)]
-pub(crate) struct Screen(pub(crate) Entity);
 
 pub(crate) fn build(app: &mut App) {
     app.register_type::<StereoCamera>()
         .add_systems(PreUpdate, (forget_removed_cameras, back_to_head.after(update_previous_view_data)))
         .configure_sets(PostUpdate, ShareSystems.before(CameraUpdateSystems))
-        .add_systems(PostUpdate, update_cameras.before(ShareSystems))
+        .add_systems(
+            PostUpdate,
+            (
+                update_cameras.before(ShareSystems),
+                follow.in_set(ShareSystems).before(TransformSystems::Propagate),
+            ),
+        )
         .add_systems(
             PostUpdate,
             to_eyes
@@ -217,18 +215,21 @@ pub(crate) struct StereoCameraParts {
     camera_3d: &'static mut Camera3d,
     target: &'static mut RenderTarget,
     projection: &'static mut Projection,
-    other: Option<&'static OtherCamera>,
+    pub(crate) cameras: &'static mut EyeCameras,
 }
 
 /// The eyes that a camera should show.
 pub(crate) struct EyesRequest<'a> {
     pub(crate) mode: StereoMode,
+    pub(crate) holes: Holes,
     pub(crate) pair: &'a EyePair,
+    pub(crate) foveation: Option<Foveation>,
+    pub(crate) gaze: Option<Dir3>,
     pub(crate) guard_distance: f32,
     pub(crate) far: f32,
     /// Format of the images that the cameras render to.
     pub(crate) format: TextureFormat,
-    /// True if the other eye's camera needs an image to render to, and a projection.
+    /// False if the other eye's camera has a target and a projection of its own, unless there is an inset.
     pub(crate) images: bool,
 }
 
@@ -268,18 +269,14 @@ fn update_cameras(
     targets: Targets,
     mut images: ResMut<Assets<Image>>,
     mut cameras: Query<(&StereoCamera, StereoCameraParts)>,
-    mut others: Query<&mut Camera, Without<StereoCamera>>,
+    mut screens: Query<&mut Camera, Without<StereoCamera>>,
 ) {
     for (stereo, mut parts) in &mut cameras {
         if parts.eyes.arrangement.is_none() || !parts.eyes.renders_to(&parts.target) {
             show_eyes(&mut commands, &mut parts);
         }
-        let beside =
-            [(parts.eyes.screen, SCREEN_ORDER), (parts.other.map(|other| other.entity), OTHER_EYE_ORDER)];
-        for (entity, offset) in beside {
-            if let Some(mut camera) = entity.and_then(|entity| others.get_mut(entity).ok()) {
-                follow(&mut camera, &parts.camera, offset);
-            }
+        if let Some(mut camera) = parts.eyes.screen.and_then(|entity| screens.get_mut(entity).ok()) {
+            follow_order(&mut camera, &parts.camera, SCREEN_ORDER);
         }
         let Some((size, format)) =
             parts.eyes.output.as_ref().and_then(|output| targets.info(output, &images))
@@ -289,9 +286,17 @@ fn update_cameras(
         if size.x < 2 || size.y < 1 {
             continue;
         }
-        let pair = stereo.pair([size.x / 2, size.y]);
-        let (mode, guard_distance, far) = (stereo.mode, stereo.guard_distance, stereo.far);
-        let request = EyesRequest { mode, pair: &pair, guard_distance, far, format, images: true };
+        let request = EyesRequest {
+            mode: stereo.mode,
+            holes: stereo.holes,
+            pair: &stereo.pair([size.x / 2, size.y]),
+            foveation: stereo.foveation,
+            gaze: stereo.gaze,
+            guard_distance: stereo.guard_distance,
+            far: stereo.far,
+            format,
+            images: true,
+        };
         parts.arrange(&mut commands, &mut images, &request);
         if let Some(screen) = parts.eyes.screen.filter(|_| parts.eyes.size != size) {
             parts.eyes.size = size;
@@ -302,15 +307,34 @@ fn update_cameras(
     }
 }
 
-/// Copies `is_active`, and `order` plus an offset, from a stereo camera. Also copies `clear_color` to the other eye's
-/// camera.
-fn follow(camera: &mut Mut<Camera>, stereo: &Camera, offset: isize) {
+/// Copies `is_active`, and `order` plus an offset, from a stereo camera.
+fn follow_order(camera: &mut Mut<Camera>, stereo: &Camera, offset: isize) {
     if camera.is_active != stereo.is_active || camera.order != stereo.order + offset {
         (camera.is_active, camera.order) = (stereo.is_active, stereo.order + offset);
     }
-    // The screen's camera clears what lies outside the eyes.
-    if offset == OTHER_EYE_ORDER && !same_clear_color(camera.clear_color, stereo.clear_color) {
-        camera.clear_color = stereo.clear_color;
+}
+
+/// Lets the cameras that belong to a stereo camera follow its settings and its views.
+fn follow(
+    stereo: Query<(&Eyes, &EyeCameras, &Camera)>,
+    mut cameras: Query<(&mut Camera, &mut Projection, &mut Transform), Without<Eyes>>,
+) {
+    for (eyes, belonging, stereo) in &stereo {
+        let Some(views) = &eyes.views else { continue };
+        for role in Role::ALL {
+            let Some(own) = belonging.get(role) else { continue };
+            let Ok((mut camera, mut projection, mut transform)) = cameras.get_mut(own.entity) else {
+                continue;
+            };
+            follow_order(&mut camera, stereo, ORDERS[role as usize]);
+            if !same_clear_color(camera.clear_color, stereo.clear_color) {
+                camera.clear_color = stereo.clear_color;
+            }
+            if let (true, Some((view, whole))) = (own.owned, views.of(role)) {
+                EyeProjection::new(view, whole.frustum, eyes.far).replace(&mut projection);
+                transform.set_if_neq(between(&eyes.origin.unwrap_or(Pose::IDENTITY), &view.pose));
+            }
+        }
     }
 }
 
@@ -343,48 +367,35 @@ fn show_eyes(commands: &mut Commands, parts: &mut StereoCameraPartsItem) {
         Msaa::Off,
         RenderLayers::none(),
         output,
-        Screen(parts.entity),
         ChildOf(parts.entity),
     ));
     parts.eyes.screen = Some(screen.id());
 }
 
 impl StereoCameraPartsItem<'_, '_> {
-    /// Prepares the images, the projections and the other eye's camera for a request. Returns that camera if it is new.
+    /// Prepares the images, the projection and the cameras for a request. Returns the other eye's camera if it is new, and
+    /// has a target and a projection of its own.
     pub(crate) fn arrange(
         &mut self,
         commands: &mut Commands,
         images: &mut Assets<Image>,
         request: &EyesRequest,
     ) -> Option<Entity> {
-        let guard = guard_band(request.guard_distance);
-        let tried = self.rendering.plan(request.mode).map_err(String::from).and_then(|plan| {
-            let views = Views::new(request.pair, plan, guard).map_err(|error| error.to_string())?;
-            Ok((plan, views))
-        });
-        let (plan, views, reason) = match tried {
-            Ok((plan, views)) => (plan, views, None),
-            Err(reason) => (Plan::Rendered, Views::rendered(request.pair), Some(reason)),
-        };
-        if reason != self.eyes.reason {
-            if let Some(reason) = &reason {
-                warn!("both eyes of {} are rendered: {reason}", self.entity);
-            }
-            self.eyes.reason = reason;
-        }
-        self.eyes.views = Some(views);
-        let still = |view: View| View { pose: Pose::IDENTITY, ..view };
-        let arrangement = Arrangement {
-            plan,
-            msaa: self.rendering.msaa(),
-            format: request.format,
-            views: [views.source, views.target].map(still),
-            far: request.far,
-        };
+        let (plan, views, holes) = self.plan(request);
+        let source = &views.wide.source;
+        (self.eyes.views, self.eyes.far) = (Some(views), request.far);
+        EyeProjection::new(source, source.frustum, request.far).replace(&mut self.projection);
         let usages = TextureUsages::from(self.camera_3d.depth_texture_usages);
         if !usages.contains(TextureUsages::TEXTURE_BINDING) {
             self.camera_3d.depth_texture_usages = (usages | TextureUsages::TEXTURE_BINDING).into();
         }
+        let arrangement = Arrangement {
+            plan,
+            holes,
+            msaa: self.rendering.msaa(),
+            format: request.format,
+            sizes: views.sizes(),
+        };
         if self.eyes.arrangement == Some(arrangement) {
             return None;
         }
@@ -398,59 +409,94 @@ impl StereoCameraPartsItem<'_, '_> {
             image.copy_on_resize = false;
             images.add(image)
         };
-        self.eyes.source = image(&views.source);
-        *self.target = RenderTarget::Image(self.eyes.source.clone().into());
-        *self.projection = Projection::custom(EyeProjection::new(&views.source, request.far));
-
-        let rendered = plan == Plan::Rendered;
-        let kept = self.other.filter(|other| plan.has_other_camera() && other.rendered == rendered);
-        if let (Some(other), None) = (self.other, kept) {
-            commands.entity(other.entity).try_despawn();
-            commands.entity(self.entity).remove::<OtherCamera>();
-        }
-        self.eyes.other = Handle::default();
-        if !plan.has_other_camera() {
-            return None;
-        }
-        let own = (
-            Camera {
-                order: self.camera.order + OTHER_EYE_ORDER,
-                clear_color: self.camera.clear_color,
-                is_active: self.camera.is_active,
-                ..default()
-            },
-            if rendered { self.rendering.msaa() } else { Msaa::Off },
-        );
-        let new = kept.is_none().then(|| {
-            let entity = commands.spawn((Camera3d::default(), ChildOf(self.entity))).id();
-            commands.entity(self.entity).insert(OtherCamera { entity, rendered });
-            entity
+        let inset = views.inset.map(|inset| inset.views);
+        let own_image = inset.is_some() || request.images && plan.has_other_camera();
+        self.eyes.images = [Some(views.wide), inset].map(|level| {
+            let level = level.as_ref();
+            EyeImages {
+                source: level.map(|level| image(&level.source)).unwrap_or_default(),
+                other: level.filter(|_| own_image).map(|level| image(&level.target)),
+            }
         });
-        let entity = new.or(kept.map(|other| other.entity))?;
-        commands.entity(entity).try_insert(own);
-        if request.images {
-            self.eyes.other = image(&views.target);
-            let target = RenderTarget::Image(self.eyes.other.clone().into());
-            let projection = Projection::custom(EyeProjection::new(&views.target, request.far));
-            commands.entity(entity).try_insert((target, projection));
+        *self.target = RenderTarget::Image(self.eyes.images[0].source.clone().into());
+        // Bevy re-reads a camera's target when its projection changes.
+        self.projection.set_changed();
+        let old = *self.cameras;
+        *self.cameras = EyeCameras(Role::ALL.map(|role| self.camera(commands, role, &views, own_image)));
+        let other = self.cameras.get(Role::Other).filter(|other| !other.owned)?;
+        old.get(Role::Other).is_none_or(|old| old.entity != other.entity).then_some(other.entity)
+    }
+
+    /// Returns what is done for a request, as far as it is possible, and logs what is not.
+    fn plan(&mut self, request: &EyesRequest) -> (Plan, Views, Holes) {
+        let pair = request.pair;
+        let effect = self.rendering.whole_image_effect().filter(|_| request.foveation.is_some());
+        let (levels, unfoveated) = match effect {
+            Some(effect) => (StereoViews::from(*pair), Some(format!("{effect} needs the whole image"))),
+            None => match levels(pair, request.foveation, request.gaze) {
+                Ok(levels) => (levels, None),
+                Err(error) => (StereoViews::from(*pair), Some(error.to_string())),
+            },
+        };
+        let guard = guard_band(request.guard_distance);
+        let tried = self.rendering.plan(request.mode).map_err(String::from).and_then(|plan| {
+            let views = Views::new(&levels, plan, guard).map_err(|error| error.to_string())?;
+            Ok((plan, views))
+        });
+        let ((plan, views), both) = match tried {
+            Ok(made) => (made, None),
+            Err(reason) => ((Plan::Rendered, Views::rendered(&levels)), Some(reason)),
+        };
+        let wanted = request.holes == Holes::Rendered && plan == Plan::Opaque;
+        let filled = self.rendering.filled_holes().filter(|_| wanted).map(String::from);
+        let holes = if wanted && filled.is_none() { Holes::Rendered } else { Holes::Filled };
+        self.eyes.explain(self.entity, [both, unfoveated, filled]);
+        (plan, views, holes)
+    }
+
+    /// Returns the camera for a role, if there is something to draw: the one that has it, or a new one.
+    fn camera(
+        &self,
+        commands: &mut Commands,
+        role: Role,
+        views: &Views,
+        own_image: bool,
+    ) -> Option<EyeCamera> {
+        let Arrangement { plan, holes, .. } = self.eyes.arrangement?;
+        let opens = holes == Holes::Rendered && role == views.detailed();
+        let opaque = plan == Plan::Rendered || role == Role::Inset || opens;
+        let wanted = views.of(role).filter(|_| plan.has_other_camera() || role == Role::Inset);
+        let old = self.cameras.get(role);
+        let kept = old.filter(|old| wanted.is_some() && old.opaque == opaque && old.owned == own_image);
+        if let (Some(old), None) = (old, kept) {
+            commands.entity(old.entity).try_despawn();
         }
-        new
+        let (view, whole) = wanted?;
+        let camera_3d = Camera3d { depth_texture_usages: self.camera_3d.depth_texture_usages, ..default() };
+        let entity =
+            kept.map_or_else(|| commands.spawn((camera_3d, ChildOf(self.entity))).id(), |kept| kept.entity);
+        commands.entity(entity).try_insert(if opaque { self.rendering.msaa() } else { Msaa::Off });
+        if own_image {
+            let [wide, inset] = &self.eyes.images;
+            let image = match role {
+                Role::Other => wide.other.as_ref()?,
+                Role::Inset => &inset.source,
+                Role::OtherInset => inset.other.as_ref()?,
+            };
+            let projection = Projection::custom(EyeProjection::new(view, whole.frustum, self.eyes.far));
+            commands.entity(entity).try_insert((RenderTarget::Image(image.clone().into()), projection));
+        }
+        Some(EyeCamera { entity, opaque, owned: own_image })
     }
 }
 
-/// Moves the cameras from the head to the eyes. Only `GlobalTransform` changes; `Transform` remains the head's.
-fn to_eyes(
-    mut cameras: Query<(&mut Eyes, &mut GlobalTransform, Option<&OtherCamera>), With<StereoCamera>>,
-    mut others: Query<&mut GlobalTransform, Without<StereoCamera>>,
-) {
-    for (mut eyes, mut transform, other) in &mut cameras {
+/// Moves the camera from the head to the eye. Only `GlobalTransform` changes; `Transform` remains the head's.
+fn to_eyes(mut cameras: Query<(&mut Eyes, &mut GlobalTransform), With<StereoCamera>>) {
+    for (mut eyes, mut transform) in &mut cameras {
         let Some(views) = eyes.views else { continue };
         let head = *transform;
         eyes.head = Some(head);
-        *transform = head.mul_transform(bevy_transform(&views.source.pose));
-        if let Some(mut other) = other.and_then(|other| others.get_mut(other.entity).ok()) {
-            *other = head.mul_transform(bevy_transform(&views.target.pose));
-        }
+        *transform = head.mul_transform(bevy_transform(&views.wide.source.pose));
     }
 }
 
@@ -469,18 +515,26 @@ pub(crate) fn bevy_transform(pose: &Pose) -> Transform {
         .with_rotation(Quat::from_array(pose.orientation.to_array()))
 }
 
+/// Returns a pose as a transform in another pose's axes.
+fn between(parent: &Pose, pose: &Pose) -> Transform {
+    let back = parent.orientation.inverse();
+    let position = back * (pose.position - parent.position);
+    bevy_transform(&Pose { position, orientation: back * pose.orientation })
+}
+
 /// Forgets cameras that were removed by other code.
 fn forget_removed_cameras(
     mut commands: Commands,
-    mut stereo: Query<(Entity, &mut Eyes, Option<&OtherCamera>)>,
-    cameras: Query<(), With<Camera>>,
+    mut stereo: Query<(&mut Eyes, &mut EyeCameras)>,
+    existing: Query<(), With<Camera>>,
 ) {
-    for (entity, mut eyes, other) in &mut stereo {
-        if other.is_some_and(|other| !cameras.contains(other.entity)) {
-            commands.entity(entity).remove::<OtherCamera>();
+    for (mut eyes, mut cameras) in &mut stereo {
+        if !cameras.iter().all(|camera| existing.contains(camera.entity)) {
+            cameras.despawn(&mut commands);
+            *cameras = EyeCameras::default();
             eyes.arrangement = None;
         }
-        if eyes.screen.is_some_and(|screen| !cameras.contains(screen)) {
+        if eyes.screen.is_some_and(|screen| !existing.contains(screen)) {
             eyes.screen = None;
             eyes.arrangement = None;
         }
@@ -491,14 +545,12 @@ fn forget_removed_cameras(
 fn restore_camera(
     removed: On<Remove, StereoCamera>,
     mut commands: Commands,
-    cameras: Query<
-        (&StereoCamera, &Eyes, &GlobalTransform, &RenderTarget, Option<&OtherCamera>),
-        With<Camera>,
-    >,
+    cameras: Query<(&StereoCamera, &Eyes, &GlobalTransform, &RenderTarget, &EyeCameras), With<Camera>>,
 ) {
-    let Ok((stereo, eyes, transform, target, other)) = cameras.get(removed.entity) else { return };
-    for entity in [eyes.screen, other.map(|other| other.entity)].into_iter().flatten() {
-        commands.entity(entity).try_despawn();
+    let Ok((stereo, eyes, transform, target, belonging)) = cameras.get(removed.entity) else { return };
+    belonging.despawn(&mut commands);
+    if let Some(screen) = eyes.screen {
+        commands.entity(screen).try_despawn();
     }
     let mut camera = commands.entity(removed.entity);
     if let (Some(output), true) = (&eyes.output, eyes.renders_to(target)) {
@@ -507,5 +559,5 @@ fn restore_camera(
         let head = eyes.head.unwrap_or(*transform);
         camera.try_insert((output.clone(), Projection::Perspective(projection), head));
     }
-    camera.try_remove::<(Eyes, OtherCamera)>();
+    camera.try_remove::<(Eyes, EyeCameras)>();
 }

@@ -23,10 +23,15 @@
 //! post-processing and anti-aliasing. If the other eye cannot be synthesized both eyes are rendered, and one line in
 //! the log gives the reason.
 //!
+//! With a [`Foveation`], each eye has fewer pixels where it does not look, and one line in the log says if a component
+//! prevents this.
+//!
 //! With the feature `openxr`, [`XrStereoCamera`](openxr::XrStereoCamera) does the same in a headset, using
 //! bevy_mod_openxr.
 
 mod camera;
+mod holes;
+mod levels;
 #[cfg(feature = "openxr")]
 pub mod openxr;
 mod passes;
@@ -37,7 +42,8 @@ mod shared;
 use bevy::prelude::*;
 
 pub use camera::{Eye, StereoCamera};
-pub use plan::StereoMode;
+pub use levels::Foveation;
+pub use plan::{Holes, StereoMode};
 pub use shared::ShareComponent;
 pub use yoro_wgpu;
 

@@ -22,10 +22,9 @@ use bevy::camera::{CameraUpdateSystems, ManualTextureViewHandle, RenderTarget};
 use bevy::core_pipeline::{Core3d, Core3dSystems, upscaling::upscaling};
 use bevy::prelude::*;
 use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
-use bevy::render::render_asset::RenderAssets;
 use bevy::render::renderer::ViewQuery;
-use bevy::render::texture::{GpuImage, ManualTextureViews};
-use bevy::render::view::{ExtractedView, ViewDepthTexture};
+use bevy::render::texture::ManualTextureViews;
+use bevy::render::view::ExtractedView;
 use bevy::render::{Render, RenderApp};
 use bevy_mod_openxr::helper_traits::ToTransform;
 use bevy_mod_openxr::init::should_run_frame_loop;
@@ -33,27 +32,34 @@ use bevy_mod_openxr::render::{XR_TEXTURE_INDEX, update_views, update_views_rende
 use bevy_mod_openxr::resources::{OxrCurrentSessionConfig, OxrFrameState, OxrViews};
 use bevy_mod_xr::camera::{XrCamera, XrProjection};
 use bevy_mod_xr::session::{XrPreDestroySession, XrRenderSystems, XrRootTransform, XrTracker};
-use yoro_wgpu::Target;
-use yoro_wgpu::yoro::eyes::{self, EyePair, Frustum, Pose};
+use yoro_wgpu::yoro::eyes::{EyePair, Frustum, Pose};
 use yoro_wgpu::yoro::glam;
 
-use crate::camera::{Eyes, EyesRequest, StereoCameraParts, Views, bevy_transform, guard_band, reversed};
-use crate::passes::{Stereo, Synthesis};
+use crate::camera::{Eyes, EyesRequest, StereoCameraParts, bevy_transform, guard_band, reversed};
+use crate::levels::{Foveation, LevelViews, Views, levels};
+use crate::passes::{Levels, Place, ShownEyes, Stereo};
 use crate::projection::clip_from_view;
-use crate::shared::{OtherCamera, ShareSystems};
-use crate::{Eye, StereoMode};
+use crate::shared::{EyeCameras, Role, ShareSystems};
+use crate::{Eye, Holes, StereoMode};
 
 /// Renders stereo in the headset from this `Camera3d`. The runtime's views determine the eyes' poses and frusta. The
 /// plugin controls the camera's transform, projection and render target. The camera renders while a session does.
 /// Despawn the entity to end this: without this component the camera is inactive.
 #[derive(Component, Clone, Debug, PartialEq, Reflect, ExtractComponent)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[require(Camera3d, Camera { is_active: false, ..default() }, Eyes, XrTracker)]
+#[require(Camera3d, Camera { is_active: false, ..default() }, Eyes, EyeCameras, XrTracker)]
 pub struct XrStereoCamera {
     /// How the other eye is produced.
     pub mode: StereoMode,
     /// The eye that is rendered.
     pub dominant: Eye,
+    /// What becomes of what near objects hide from the rendered eye.
+    pub holes: Holes,
+    /// Fewer pixels where the eyes do not look. `None` for all pixels everywhere.
+    pub foveation: Option<Foveation>,
+    /// Where the eyes look, as a direction in the camera's axes: it may change in every frame, and nothing is created anew.
+    /// `None` for straight ahead.
+    pub gaze: Option<Dir3>,
     /// Distance of the near plane in metres, more than 0.
     pub near: f32,
     /// Distance in metres beyond which objects are culled.
@@ -64,12 +70,15 @@ pub struct XrStereoCamera {
 }
 
 impl Default for XrStereoCamera {
-    /// Synthesizes opaque surfaces, renders the right eye, and uses planes at 0.1 m and 1000 m and a guard band for
+    /// Synthesizes opaque surfaces, renders the right eye with all pixels, and uses planes at 0.1 m and 1000 m and a guard band for
     /// objects at 1 m or farther.
     fn default() -> XrStereoCamera {
         XrStereoCamera {
             mode: StereoMode::default(),
             dominant: Eye::default(),
+            holes: Holes::default(),
+            foveation: None,
+            gaze: None,
             near: 0.1,
             far: 1000.0,
             guard_distance: 1.0,
@@ -90,6 +99,24 @@ impl XrStereoCamera {
             size: config.resolution.to_array(),
             dominant: self.dominant.into(),
         })
+    }
+
+    /// Returns the newest views, unless their images would have other sizes than those that were arranged for.
+    fn newest_views(
+        &self,
+        views: &OxrViews,
+        config: &OxrCurrentSessionConfig,
+        shown: &ShownEyes,
+        sources: &Query<&mut Stereo>,
+    ) -> Option<Views> {
+        let arranged = |camera| sources.get(camera).ok();
+        let wide = arranged(shown.wide)?;
+        let inset = shown.inset.as_ref().and_then(|inset| arranged(inset.camera));
+        let levels =
+            levels(&self.pair(views, config)?, self.foveation.filter(|_| inset.is_some()), self.gaze);
+        let newest = Views::new(&levels.ok()?, wide.plan, guard_band(self.guard_distance)).ok()?;
+        let sizes = [Some(wide), inset].map(|level| level.map(|level| level.views.sizes()));
+        Some(newest).filter(|newest| newest.sizes() == sizes)
     }
 }
 
@@ -114,7 +141,7 @@ pub(crate) fn build(app: &mut App) {
         )
         .add_systems(PreUpdate, pause_cameras.run_if(not(should_run_frame_loop)))
         .add_systems(XrPreDestroySession, reset_cameras)
-        .add_observer(remove_other_camera);
+        .add_observer(remove_cameras);
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
     render
         .add_systems(
@@ -134,6 +161,7 @@ fn update_cameras(
     frame: Res<OxrFrameState>,
     mut images: ResMut<Assets<Image>>,
     mut cameras: Query<(&XrStereoCamera, &mut Transform, StereoCameraParts)>,
+    mut layers: Query<&mut XrCamera>,
 ) {
     for (stereo, mut transform, mut parts) in &mut cameras {
         let pair = stereo.pair(&views, &config);
@@ -144,7 +172,10 @@ fn update_cameras(
         let Some(pair) = pair else { continue };
         let request = EyesRequest {
             mode: stereo.mode,
+            holes: stereo.holes,
             pair: &pair,
+            foveation: stereo.foveation,
+            gaze: stereo.gaze,
             guard_distance: stereo.guard_distance,
             far: stereo.far,
             format: config.format,
@@ -152,14 +183,19 @@ fn update_cameras(
         };
         let new = parts.arrange(&mut commands, &mut images, &request);
         let Some(views) = parts.eyes.views else { continue };
-        *transform = bevy_transform(&views.source.pose);
+        let source = views.wide.source.pose;
+        (*transform, parts.eyes.origin) = (bevy_transform(&source), Some(source));
+        let index = pair.dominant.other().index() as u32;
+        let other = parts.cameras.get(Role::Other);
+        if let Some(mut layer) = other.and_then(|other| layers.get_mut(other.entity).ok()) {
+            layer.0 = index;
+        }
         if let Some(other) = new {
-            let index = pair.dominant.other().index() as u32;
             commands.entity(other).insert((
                 XrCamera(index),
                 Projection::custom(XrProjection { near: stereo.near, ..default() }),
                 RenderTarget::TextureView(ManualTextureViewHandle(XR_TEXTURE_INDEX + index)),
-                bevy_transform(&views.target.pose),
+                bevy_transform(&views.wide.target.pose),
             ));
         }
     }
@@ -175,70 +211,68 @@ fn pause_cameras(mut cameras: Query<&mut Camera, With<XrStereoCamera>>) {
 }
 
 /// Resets the cameras at the end of a session, when bevy_mod_openxr removes its own.
-fn reset_cameras(mut commands: Commands, cameras: Query<Entity, With<XrStereoCamera>>) {
-    for entity in &cameras {
-        commands.entity(entity).remove::<OtherCamera>().insert(Eyes::default());
+fn reset_cameras(
+    mut commands: Commands,
+    mut cameras: Query<(&mut Eyes, &mut EyeCameras), With<XrStereoCamera>>,
+) {
+    for (mut eyes, mut belonging) in &mut cameras {
+        belonging.despawn(&mut commands);
+        (*eyes, *belonging) = default();
     }
 }
 
-/// Removes the other eye's camera.
-fn remove_other_camera(
+/// Removes the cameras that belong to a stereo camera.
+fn remove_cameras(
     removed: On<Remove, XrStereoCamera>,
     mut commands: Commands,
-    mut cameras: Query<(&mut Camera, Option<&OtherCamera>)>,
+    mut cameras: Query<(&mut Camera, &EyeCameras)>,
 ) {
-    let Ok((mut camera, other)) = cameras.get_mut(removed.entity) else { return };
+    let Ok((mut camera, belonging)) = cameras.get_mut(removed.entity) else { return };
     camera.is_active = false;
-    if let Some(other) = other {
-        commands.entity(other.entity).try_despawn();
-    }
-    commands.entity(removed.entity).try_remove::<(Eyes, OtherCamera)>();
+    belonging.despawn(&mut commands);
+    commands.entity(removed.entity).try_remove::<(Eyes, EyeCameras)>();
 }
 
-/// Moves the rendered eye to the newest views, with which its image is submitted.
+/// Moves the cameras to the newest views, with which the image is submitted.
 fn use_newest_views(
-    views: Res<OxrViews>,
+    newest: Res<OxrViews>,
     config: Res<OxrCurrentSessionConfig>,
     root: Res<XrRootTransform>,
-    mut cameras: Query<(&XrStereoCamera, &mut Stereo, &mut ExtractedView)>,
+    mut shown: Query<&mut ShownEyes>,
+    settings: Query<&XrStereoCamera>,
+    mut sources: Query<&mut Stereo>,
+    mut cameras: Query<(&mut ExtractedView, Has<XrCamera>)>,
 ) {
-    for (camera, mut stereo, mut extracted) in &mut cameras {
-        let newest = camera
-            .pair(&views, &config)
-            .and_then(|pair| Views::new(&pair, stereo.plan, guard_band(camera.guard_distance)).ok());
-        // If the sizes differ, the image has the size of the older views.
-        let Some(views) = newest.filter(|views| views.source.size == stereo.views.source.size) else {
-            continue;
+    for mut shown in &mut shown {
+        let Ok(camera) = settings.get(shown.wide) else { continue };
+        let newest = camera.newest_views(&newest, &config, &shown, &sources);
+        let Some(views) = newest else { continue };
+        let mut use_views = |source: Entity, views: LevelViews| {
+            let Ok(mut stereo) = sources.get_mut(source) else { return };
+            stereo.views = views;
+            let other = stereo.other_camera.map(|other| (other, views.target));
+            for (entity, view) in [Some((source, views.source)), other].into_iter().flatten() {
+                // bevy_mod_openxr moves its own cameras.
+                if let Ok((mut extracted, false)) = cameras.get_mut(entity) {
+                    extracted.world_from_view = root.0.mul_transform(bevy_transform(&view.pose));
+                    extracted.clip_from_view = clip_from_view(&view);
+                    extracted.clip_from_world = None;
+                }
+            }
         };
-        extracted.world_from_view = root.0.mul_transform(bevy_transform(&views.source.pose));
-        extracted.clip_from_view = clip_from_view(&views.source);
-        extracted.clip_from_world = None;
-        stereo.views = views;
+        use_views(shown.wide, views.wide);
+        if let (Some(shown), Some(views)) = (&mut shown.inset, views.inset) {
+            use_views(shown.camera, views.views);
+            shown.compositions = views.compositions;
+        }
     }
 }
 
-/// Fills both layers, or only the dominant eye's if the other eye has a camera.
-fn fill_layers(
-    view: ViewQuery<(&Stereo, &ViewDepthTexture), With<XrStereoCamera>>,
-    images: Res<RenderAssets<GpuImage>>,
-    layers: Res<ManualTextureViews>,
-    mut synthesis: Synthesis,
-) {
-    let (stereo, depth) = view.into_inner();
-    let Some(source) = images.get(stereo.source) else { return };
-    let index = |eye: eyes::Eye| eye.index() as u32;
-    let layer = |eye| layers.get(&ManualTextureViewHandle(XR_TEXTURE_INDEX + index(eye)));
-    let Views { dominant, crop, target, .. } = stereo.views;
-    if let Some(layer) = layer(dominant) {
-        let to = layer.texture_view.texture();
-        synthesis.copy(&source.texture, crop, to, [0, 0, index(dominant)], target.size);
-    }
-    if let Some(layer) = layer(dominant.other()) {
-        stereo.synthesize_finished(
-            &mut synthesis,
-            &source.texture_view,
-            depth,
-            &Target::new(&layer.texture_view),
-        );
-    }
+/// Fills both layers, or only the dominant eye's if the camera of the other eye fills its own.
+fn fill_layers(view: ViewQuery<&ShownEyes>, layers: Res<ManualTextureViews>, mut levels: Levels) {
+    levels.show(view.into_inner(), |eye| {
+        let layer = eye.index() as u32;
+        let place = layers.get(&ManualTextureViewHandle(XR_TEXTURE_INDEX + layer))?;
+        Some(Place { view: &place.texture_view, layer, x: 0 })
+    });
 }

@@ -1,6 +1,12 @@
 //! How the other eye of a camera is produced.
 
+use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, NormalPrepass};
 use bevy::ecs::query::QueryData;
+use bevy::pbr::{AtmosphereSettings, ScreenSpaceReflections};
+use bevy::post_process::auto_exposure::AutoExposure;
+use bevy::post_process::bloom::Bloom;
+use bevy::post_process::effect_stack::{ChromaticAberration, LensDistortion, Vignette};
+use bevy::post_process::motion_blur::MotionBlur;
 use bevy::prelude::*;
 use bevy::render::camera::TemporalJitter;
 
@@ -17,6 +23,20 @@ pub enum StereoMode {
     /// objects move with what is behind them, and highlights with their surface.
     Finished,
     /// Both eyes are rendered, for comparison.
+    Rendered,
+}
+
+/// What becomes of what near objects hide from the rendered eye, in [`StereoMode::Opaque`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Debug, PartialEq, Hash, Clone)]
+pub enum Holes {
+    /// It is filled with what lies around it.
+    #[default]
+    Filled,
+    /// The other eye's camera renders it: opaque objects and the sky box are drawn a second time, where nothing was
+    /// synthesized, with the materials as they are. They must test depth. Of foveated eyes this is the inset's. Holes are
+    /// filled, and one line in the log says so, with MSAA, prepasses (`ScreenSpaceAmbientOcclusion` has two), and on devices
+    /// without `DEPTH32FLOAT_STENCIL8`.
     Rendered,
 }
 
@@ -40,6 +60,22 @@ impl Plan {
 pub(crate) struct Rendering {
     msaa: &'static Msaa,
     jitter: Has<TemporalJitter>,
+    prepasses: (Has<DepthPrepass>, Has<NormalPrepass>),
+    whole: WholeImage,
+}
+
+/// The effects that cannot be made of an image's parts.
+#[derive(QueryData)]
+struct WholeImage {
+    atmosphere: Has<AtmosphereSettings>,
+    auto_exposure: Has<AutoExposure>,
+    bloom: Has<Bloom>,
+    chromatic_aberration: Has<ChromaticAberration>,
+    deferred: Has<DeferredPrepass>,
+    lens_distortion: Has<LensDistortion>,
+    motion_blur: Has<MotionBlur>,
+    reflections: Has<ScreenSpaceReflections>,
+    vignette: Has<Vignette>,
 }
 
 impl RenderingItem<'_, '_> {
@@ -60,5 +96,31 @@ impl RenderingItem<'_, '_> {
 
     pub(crate) fn msaa(&self) -> Msaa {
         *self.msaa
+    }
+
+    /// Returns the reason why holes cannot be rendered.
+    pub(crate) fn filled_holes(&self) -> Option<&'static str> {
+        match self.prepasses {
+            _ if *self.msaa != Msaa::Off => Some("their pixels would have one sample; use Msaa::Off"),
+            (false, false) => None,
+            _ => Some("a prepass would draw whole objects once more"),
+        }
+    }
+
+    /// Returns the name of a component that prevents foveation.
+    pub(crate) fn whole_image_effect(&self) -> Option<&'static str> {
+        let whole = &self.whole;
+        let effects = [
+            (whole.atmosphere, "AtmosphereSettings"),
+            (whole.auto_exposure, "AutoExposure"),
+            (whole.bloom, "Bloom"),
+            (whole.chromatic_aberration, "ChromaticAberration"),
+            (whole.reflections, "ScreenSpaceReflections"),
+            (whole.deferred, "DeferredPrepass"),
+            (whole.lens_distortion, "LensDistortion"),
+            (whole.motion_blur, "MotionBlur"),
+            (whole.vignette, "Vignette"),
+        ];
+        effects.into_iter().find_map(|(present, name)| present.then_some(name))
     }
 }

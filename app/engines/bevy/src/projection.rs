@@ -2,20 +2,38 @@
 
 use bevy::camera::{CameraProjection, SubCameraView};
 use bevy::math::{Mat4, Vec3A};
+use bevy::prelude::{DetectChangesMut, Mut, Projection};
 use yoro_wgpu::yoro::eyes::{Frustum, View};
 
 /// The projection of an eye: any frustum, with reversed depth and no far plane.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct EyeProjection {
     clip_from_view: Mat4,
-    frustum: Frustum,
+    /// The frustum for which cascades of shadow maps are made. Both levels of an eye have one, or their shadows differ.
+    shadowed: Frustum,
     /// Distance beyond which objects are culled.
     far: f32,
 }
 
 impl EyeProjection {
-    pub(crate) fn new(view: &View, far: f32) -> EyeProjection {
-        EyeProjection { clip_from_view: clip_from_view(view), frustum: view.frustum, far }
+    pub(crate) fn new(view: &View, shadowed: Frustum, far: f32) -> EyeProjection {
+        EyeProjection { clip_from_view: clip_from_view(view), shadowed, far }
+    }
+
+    /// Replaces a camera's projection if it is another one.
+    pub(crate) fn replace(self, projection: &mut Mut<Projection>) {
+        let inner = projection.bypass_change_detection();
+        if let Projection::Custom(custom) = inner
+            && let Some(own) = custom.get_mut::<EyeProjection>()
+        {
+            if *own == self {
+                return;
+            }
+            *own = self;
+        } else {
+            *inner = Projection::custom(self);
+        }
+        projection.set_changed();
     }
 }
 
@@ -41,7 +59,7 @@ impl CameraProjection for EyeProjection {
     }
 
     fn get_frustum_corners(&self, z_near: f32, z_far: f32) -> [Vec3A; 8] {
-        let Frustum { left, right, bottom, top } = self.frustum;
+        let Frustum { left, right, bottom, top } = self.shadowed;
         let sides = [(right, bottom), (right, top), (left, top), (left, bottom)];
         std::array::from_fn(|i| {
             let (z, (x, y)) = (if i < 4 { z_near } else { z_far }, sides[i % 4]);

@@ -16,18 +16,54 @@ use bevy::prelude::*;
 use bevy::render::camera::MipBias;
 use bevy::render::view::ColorGrading;
 
-/// The camera of the other eye, on a stereo camera.
-#[derive(Component, Clone, Copy)]
-pub(crate) struct OtherCamera {
+/// The cameras that belong to a stereo camera, which itself renders the wide level: by [`Role`].
+#[derive(Component, Clone, Copy, Default)]
+pub(crate) struct EyeCameras(pub(crate) [Option<EyeCamera>; 3]);
+
+/// What a camera that belongs to a stereo camera draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// The other eye's wide level.
+    Other,
+    /// The inset that the other eye's is synthesized from.
+    Inset,
+    /// The other eye's inset.
+    OtherInset,
+}
+
+impl Role {
+    pub(crate) const ALL: [Role; 3] = [Role::Other, Role::Inset, Role::OtherInset];
+}
+
+/// A camera that belongs to a stereo camera.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EyeCamera {
     pub(crate) entity: Entity,
     /// False if the camera draws only what is not synthesized.
-    pub(crate) rendered: bool,
+    pub(crate) opaque: bool,
+    /// False if its target and projection are bevy_mod_openxr's.
+    pub(crate) owned: bool,
+}
+
+impl EyeCameras {
+    pub(crate) fn get(&self, role: Role) -> Option<EyeCamera> {
+        self.0[role as usize]
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &EyeCamera> {
+        self.0.iter().flatten()
+    }
+
+    /// Despawns them all.
+    pub(crate) fn despawn(&self, commands: &mut Commands) {
+        self.iter().for_each(|camera| commands.entity(camera.entity).try_despawn());
+    }
 }
 
 /// Shares components between both eyes' cameras.
 pub trait ShareComponent {
-    /// Copies this component of the rendered camera to the other eye's camera whenever it changes. Use it for your own
-    /// post-processing; Bevy's components are already shared.
+    /// Copies this component of the rendered camera to the cameras of the other eye and of the inset whenever it changes.
+    /// Use it for your own post-processing; Bevy's components are already shared.
     fn share_with_other_eye<C: Component + Clone>(&mut self) -> &mut Self;
 }
 
@@ -65,7 +101,7 @@ pub(crate) fn build(app: &mut App) {
         .share_with_other_eye::<Tonemapping>()
         .share_with_other_eye::<Vignette>()
         .share_with_other_eye::<VolumetricFog>()
-        // Components that draw opaque surfaces, or that need passes which do and that add their components.
+        // Those with `false` draw opaque surfaces, or need passes which do and add their components.
         .add_systems(
             PostUpdate,
             (
@@ -77,20 +113,22 @@ pub(crate) fn build(app: &mut App) {
         );
 }
 
-/// Copies a component to the other eyes' cameras. `SYNTHESIZED` is false for components that the camera of a
-/// synthesized eye must not have.
+/// Copies a component to the cameras that belong to a stereo camera. `SYNTHESIZED` is false for components that the camera
+/// of a synthesized eye must not have.
 fn share<C: Component + Clone, const SYNTHESIZED: bool>(
     mut commands: Commands,
-    changed: Query<(&OtherCamera, &C), Or<(Changed<C>, Changed<OtherCamera>)>>,
+    changed: Query<(&EyeCameras, &C), Or<(Changed<C>, Changed<EyeCameras>)>>,
     mut removed: RemovedComponents<C>,
-    others: Query<&OtherCamera, Without<C>>,
+    others: Query<&EyeCameras, Without<C>>,
 ) {
-    for (other, component) in &changed {
-        if SYNTHESIZED || other.rendered {
-            commands.entity(other.entity).try_insert(component.clone());
+    for (cameras, component) in &changed {
+        for camera in cameras.iter().filter(|camera| SYNTHESIZED || camera.opaque) {
+            commands.entity(camera.entity).try_insert(component.clone());
         }
     }
-    for other in removed.read().filter_map(|camera| others.get(camera).ok()) {
-        commands.entity(other.entity).try_remove::<C>();
+    for cameras in removed.read().filter_map(|camera| others.get(camera).ok()) {
+        for camera in cameras.iter() {
+            commands.entity(camera.entity).try_remove::<C>();
+        }
     }
 }

@@ -21,12 +21,12 @@ use bevy_mod_openxr::{add_xr_plugins, features::handtracking::HandTrackingPlugin
 use bevy_mod_xr::session::{XrRenderSystems, XrTrackingRoot};
 use bevy_yoro::openxr::XrStereoCamera;
 use bevy_yoro::yoro_wgpu::wgpu;
-use bevy_yoro::{Eye, StereoMode, YoroPlugin};
+use bevy_yoro::{Eye, Foveation, StereoMode, YoroPlugin};
 use image::RgbImage;
 use support::{finish, psnr, read, rendered, room, windowless};
 
-/// The number of frames that are shown.
-const FRAMES: u32 = 100;
+/// The number of frames that are shown: 25 in each mode with either eye rendered, and 25 foveated.
+const FRAMES: u32 = 125;
 
 /// Replaces the swapchain's textures, whose usage does not allow reading, by readable ones. The runtime shows its own
 /// textures.
@@ -107,29 +107,35 @@ fn both_layers_show_the_eyes() {
     let camera = world.spawn((XrStereoCamera::default(), Camera { order: 10, ..default() }, Msaa::Off)).id();
     for frame in 0..FRAMES {
         let (dominant, made) =
-            if frame < FRAMES / 2 { (Eye::Right, Eye::Left) } else { (Eye::Left, Eye::Right) };
+            if frame / 50 == 1 { (Eye::Left, Eye::Right) } else { (Eye::Right, Eye::Left) };
+        let foveation = (frame >= 100).then_some(Foveation::MEDIUM);
         let mode = if frame % 50 < 25 { StereoMode::Opaque } else { StereoMode::Finished };
         if frame % 25 == 0 {
             let mut stereo = app.world_mut().get_mut::<XrStereoCamera>(camera).unwrap();
-            (stereo.mode, stereo.dominant) = (mode, dominant);
+            (stereo.mode, stereo.dominant, stereo.foveation) = (mode, dominant, foveation);
             app.world_mut().get_mut::<XrStereoCamera>(truth).unwrap().dominant = made;
         }
         shown(&mut app);
         if frame % 25 < 24 {
             continue;
         }
-        let RenderTarget::Image(image) = app.world().get::<RenderTarget>(truth).unwrap() else {
-            panic!("the camera renders into an image");
+        let image = |camera| {
+            let RenderTarget::Image(image) = app.world().get::<RenderTarget>(camera).unwrap() else {
+                panic!("the camera renders into an image");
+            };
+            rendered(&app, &image.handle)
         };
-        let truth = rendered(&app, &image.handle);
+        let level = if image(camera).height() < size.y { "foveated" } else { "whole" };
+        assert_eq!(level == "foveated", foveation.is_some(), "frame {frame} is {level}");
+        let truth = image(truth);
         let layers = [0, 1].map(|eye| layer(&app, eye));
         let made = made as usize;
         let (value, same) = (psnr(&layers[made], &truth), psnr(&layers[1 - made], &truth));
         println!(
-            "{mode:?}, {dominant:?} eye rendered: {value:.2} dB, the rendered eye in its place {same:.2} dB"
+            "{mode:?}, {dominant:?} eye rendered, {level}: {value:.2} dB, the rendered eye in its place {same:.2} dB"
         );
         if let Some(folder) = std::env::var_os("OUT").map(std::path::PathBuf::from) {
-            let name = |eye| folder.join(format!("{mode:?}-{dominant:?}-{eye}.png").to_lowercase());
+            let name = |eye| folder.join(format!("{mode:?}-{dominant:?}-{level}-{eye}.png").to_lowercase());
             for (image, eye) in layers.iter().chain([&truth]).zip(["left", "right", "truth"]) {
                 image.save(name(eye)).unwrap();
             }

@@ -3,8 +3,10 @@
 
 use bevy::app::{PluginGroupBuilder, PluginsState};
 use bevy::camera::RenderTarget;
+use bevy::diagnostic::{DiagnosticPath, DiagnosticsStore};
 use bevy::log::LogPlugin;
 use bevy::prelude::*;
+use bevy::render::diagnostic::RenderDiagnosticsPlugin;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::render_resource::{TextureFormat, TextureUsages};
@@ -107,7 +109,8 @@ pub fn headless() -> App {
         synchronous_pipeline_compilation: true,
         ..default()
     };
-    app.add_plugins((windowless().set(rendering), YoroPlugin)).add_systems(Startup, room);
+    app.add_plugins((windowless().set(rendering), RenderDiagnosticsPlugin, YoroPlugin))
+        .add_systems(Startup, room);
     finish(&mut app);
     app
 }
@@ -143,6 +146,18 @@ pub fn picture(app: &mut App, image: &Handle<Image>) -> RgbImage {
         app.update();
     }
     rendered(app, image)
+}
+
+/// Returns the fragments that Bevy shades in a pass, on average over the views that have the pass in some frames.
+pub fn shaded(app: &mut App, pass: &str) -> f64 {
+    let path = DiagnosticPath::from_components(["render", pass, "fragment_shader_invocations"]);
+    let mut store = app.world_mut().resource_mut::<DiagnosticsStore>();
+    store.get_mut(&path).into_iter().for_each(|diagnostic| diagnostic.clear_history());
+    for _ in 0..6 {
+        app.update();
+    }
+    let store = app.world().resource::<DiagnosticsStore>();
+    store.get(&path).and_then(|diagnostic| diagnostic.average()).expect("the device counts fragments")
 }
 
 /// Returns the contents of an image after the last frame.

@@ -1,6 +1,8 @@
 //! Compares both modes with a second camera of Bevy's, on any device that wgpu finds.
 
-#[path = "../examples/support/mod.rs"]
+mod holes;
+mod levels;
+#[path = "../../examples/support/mod.rs"]
 mod support;
 
 use bevy::anti_alias::taa::TemporalAntiAliasing;
