@@ -13,6 +13,7 @@ use crate::prepared::PreparedScene;
 use crate::view::RenderSettings;
 use yoro::choice::{Cost, StereoPath};
 use yoro::eyes::StereoViews;
+use yoro::opengl::Part;
 use yoro_gl::{Context, GlError};
 use yoro_settings::FrameRate;
 
@@ -37,7 +38,7 @@ impl FrameTargets<'_> {
     /// [`GlError`] if the driver has no memory for the images.
     pub fn fill(self, gl: &Context, views: &StereoViews, color: [f32; 4]) -> Result<(), GlError> {
         let layers = match self {
-            FrameTargets::Images(images) => images.fit(views, false)?,
+            FrameTargets::Images(images) => images.fit(views, false, [None; 2])?,
             FrameTargets::Layers(layers) => layers,
             FrameTargets::Eyes(wide) => LayerTargets { wide, inset: None },
         };
@@ -217,6 +218,11 @@ impl StereoSession {
         }
         let Plan { path, fallback, counts } = self.plan(views, scene)?;
         let is_synthesized = path == StereoPath::Synthesis && self.method == Method::Synthesized;
+        // Of the synthesis in both paths, which take turns: images keep their sizes.
+        let parts = self.chosen.rendered_parts(scene, views).map(|part| match path {
+            StereoPath::Synthesis => part,
+            StereoPath::TwoViews => part.map(|part| Part { origin: [0, 0], ..part }),
+        });
         // Eyes with an inset are composed of images of this session.
         let mut own = match &targets {
             FrameTargets::Eyes(_) if views.inset.is_some() => Some(self.take_images()?),
@@ -224,11 +230,11 @@ impl StereoSession {
         };
         let mut targets = targets;
         let to = match (&mut targets, &mut own) {
-            (FrameTargets::Images(images), _) => images.fit(views, is_synthesized)?,
+            (FrameTargets::Images(images), _) => images.fit(views, is_synthesized, parts)?,
             (FrameTargets::Layers(layers), _) => *layers,
             (FrameTargets::Eyes(to), None) => LayerTargets { wide: *to, inset: None },
             (FrameTargets::Eyes(to), Some(images)) => {
-                self.layers_of(images.fit(views, is_synthesized)?, views, to)
+                self.layers_of(images.fit(views, is_synthesized, parts)?, views, to)
             }
         };
         if self.auto.as_mut().is_some_and(|auto| counts && auto.take_new()) {
@@ -343,6 +349,15 @@ impl LayerMethods {
     fn prepare(&mut self, PreparedScene { renderer, scene }: &mut PreparedScene) -> Result<(), StereoError> {
         let methods = [Some(&mut self.wide), self.inset.as_mut()];
         methods.into_iter().flatten().try_for_each(|method| method.prepare(renderer, scene))
+    }
+
+    /// Returns the dominant eye's place in the view that is rendered for the wide layer, and for the inset, if that view is
+    /// rendered where the eye is shown.
+    fn rendered_parts(&self, scene: &PreparedScene, views: &StereoViews) -> [Option<Part>; 2] {
+        [Some(&views.wide), views.inset.as_ref()].map(|layer| {
+            let layer = Frame::rendered_layer(layer?);
+            self.wide.rendered_part(&scene.renderer, &scene.scene, &layer)
+        })
     }
 
     /// Renders all layers of a frame. `near` measures the depth of the wide one. Returns true if its motion vectors were
