@@ -1,7 +1,7 @@
 // The eye's image through the lens. It is looked up by direction, so that it can be turned (timewarp), and fades
 // towards the borders of the lens and of the image.
 
-// The image is display-referred sRGB, as the screen takes it: one texture, or levels that are composed on the way.
+// The image is display-referred sRGB, as the screen takes it: a rectangle of a texture, or levels that are composed on the way.
 // A panel is drawn over composed levels, since letters cannot be read in a level of few pixels.
 #ifdef LEVELS
 #include "include/levels.glsl"
@@ -20,7 +20,8 @@ vec4 with_panel(vec2 place) {
 #define IMAGE(uv) with_panel(uv)
 #else
 uniform sampler2D image;
-#define IMAGE(uv) texture(image, uv)
+uniform vec4 image_place;  // texture coordinates at a place in the eye's image: image_place.xy * place + image_place.zw
+#define IMAGE(uv) texture(image, image_place.xy * (uv) + image_place.zw)
 #endif
 uniform vec4 frustum;     // left, bottom, width, height of the image in tangents
 uniform float border;     // width of the fade at a border, as a part of the image

@@ -447,6 +447,14 @@ impl ForeignTarget {
     }
 }
 
+impl Drop for ForeignTarget {
+    fn drop(&mut self) {
+        // Its owner may delete the texture now, whose name another one then takes.
+        let deleted = &self.framebuffer.gl.deleted_textures;
+        deleted.set(deleted.get() + 1);
+    }
+}
+
 impl Context {
     /// Binds a framebuffer and sets the viewport to a rectangle, for draws that overwrite all of it in the first
     /// `colors` (at most two) colour attachments and, if `depth` is true, in depth. On OpenGL ES the rectangle's old

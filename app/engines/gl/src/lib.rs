@@ -135,6 +135,8 @@ pub struct Context {
     texture_bytes: Cell<usize>,
     /// The number of textures that were deleted: their names may come again.
     deleted_textures: Cell<u64>,
+    /// True while passes draw into images that stay in a tile.
+    is_in_tile: Cell<bool>,
     empty_vertex_array: glow::VertexArray,
     observed: RefCell<Option<observer::Observed>>,
     /// The last field, since fields are dropped in order of declaration.
@@ -255,6 +257,7 @@ impl Context {
             objects: Cell::new(0),
             texture_bytes: Cell::new(0),
             deleted_textures: Cell::new(0),
+            is_in_tile: Cell::new(false),
             empty_vertex_array,
             observed: RefCell::new(None),
             _owner: owner,

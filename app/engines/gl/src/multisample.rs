@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glow::HasContext;
 
 use crate::framebuffer::Framebuffer;
-use crate::{Context, Destination, Format, GlError, RenderTarget, Texture};
+use crate::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
 /// What is averaged or copied out of a target: the colour attachment of a number, or depth.
 #[derive(Clone, Copy)]
@@ -186,10 +186,9 @@ impl MultisampleTarget {
         self.gl.bind_framebuffer(Some(self.framebuffer.raw), [0, 0], size);
     }
 
-    /// Averages the samples of a colour attachment into a rectangle of the same format. The rectangle is the lower left
-    /// one of both: OpenGL ES averages between equal rectangles only.
+    /// Averages the samples of a colour attachment into the same rectangle of a framebuffer of the same format: OpenGL ES
+    /// averages between equal rectangles only.
     pub fn average(&self, attachment: usize, to: &Destination) {
-        debug_assert_eq!(to.origin, [0, 0]);
         self.blit(Aspect::Color(attachment), to);
     }
 
@@ -201,7 +200,8 @@ impl MultisampleTarget {
 
     fn blit(&self, aspect: Aspect, to: &Destination) {
         let from = Some(self.framebuffer.raw);
-        let [w, h] = to.size.map(|n| n as i32);
+        let ([x, y], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
+        let (right, top) = (x + w, y + h);
         let gl = self.gl.raw();
         // SAFETY: the source is this target's framebuffer; the rectangles are equal, as GL demands for samples.
         unsafe {
@@ -215,7 +215,7 @@ impl MultisampleTarget {
                 Aspect::Depth => glow::DEPTH_BUFFER_BIT,
             };
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, to.framebuffer);
-            gl.blit_framebuffer(0, 0, w, h, 0, 0, w, h, mask, glow::NEAREST);
+            gl.blit_framebuffer(x, y, right, top, x, y, right, top, mask, glow::NEAREST);
         }
     }
 
@@ -274,8 +274,9 @@ impl Drop for MultisampleTarget {
     }
 }
 
-/// A framebuffer that renders with several samples per pixel into textures of one. A tile-based GPU keeps the samples in
-/// its tiles and averages them when it writes the tiles. The samples are lost as soon as another framebuffer is bound.
+/// A framebuffer for textures that others own. With several samples per pixel, a tile-based GPU keeps them in its tiles, and
+/// averages them when it writes the tiles. The samples are lost as soon as another framebuffer is bound; what is drawn then
+/// begins with the averages ([`TileTarget::loads`]).
 pub struct TileTarget {
     gl: Rc<Context>,
     framebuffer: Framebuffer,
@@ -290,11 +291,11 @@ impl TileTarget {
     /// Creates a framebuffer for this many samples, without textures.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] without [`crate::Capabilities::tile_samples`]; [`GlError::Object`] if the driver
-    /// refuses.
+    /// [`GlError::Unsupported`] for several samples without [`crate::Capabilities::tile_samples`]; [`GlError::Object`] if the
+    /// driver refuses.
     pub fn new(gl: &Rc<Context>, samples: u32) -> Result<TileTarget, GlError> {
         let capabilities = gl.capabilities();
-        if !capabilities.tile_samples {
+        if samples > 1 && !capabilities.tile_samples {
             return Err(GlError::Unsupported(format!(
                 "{} has no GL_EXT_multisampled_render_to_texture2",
                 capabilities.renderer
@@ -309,8 +310,8 @@ impl TileTarget {
         })
     }
 
-    /// Attaches colour textures, which receive the averages, and a depth texture of the same size, which is never
-    /// written, unless they are attached already.
+    /// Attaches colour textures, which receive the averages, and a depth texture of the same size, which is written only
+    /// with one sample per pixel, unless they are attached already.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver cannot render to these textures with this many samples.
@@ -340,14 +341,12 @@ impl TileTarget {
                 gl.framebuffer_texture_2d(glow::FRAMEBUFFER, attachment, glow::TEXTURE_2D, None, 0);
             }
             for (attachment, raw) in attachments.zip(textures()) {
-                gl.framebuffer_texture_2d_multisample(
-                    glow::FRAMEBUFFER,
-                    attachment,
-                    glow::TEXTURE_2D,
-                    Some(raw),
-                    0,
-                    self.samples as i32,
-                );
+                let (target, kind, samples) = (glow::FRAMEBUFFER, glow::TEXTURE_2D, self.samples as i32);
+                if samples > 1 {
+                    gl.framebuffer_texture_2d_multisample(target, attachment, kind, Some(raw), 0, samples);
+                } else {
+                    gl.framebuffer_texture_2d(target, attachment, kind, Some(raw), 0);
+                }
             }
             gl.draw_buffers(&buffers);
             gl.check_framebuffer_status(glow::FRAMEBUFFER)
@@ -361,6 +360,36 @@ impl TileTarget {
         self.textures = textures().collect();
         self.deleted = deleted;
         Ok(())
+    }
+
+    /// True if the driver has samples in tiles, and gives each sample its pixel's colour where a texture is drawn over that
+    /// was drawn before. The extension's text does not say so.
+    ///
+    /// # Errors
+    /// [`GlError::Object`] if the driver has no memory.
+    pub fn loads(gl: &Rc<Context>, samples: u32) -> Result<bool, GlError> {
+        const SIZE: [u32; 2] = [4, 4];
+        if samples == 1 || !gl.capabilities().tile_samples {
+            return Ok(samples == 1);
+        }
+        let color = RenderTarget::new(gl, SIZE, &[(Format::Rgba8, Filter::Nearest)], None)?;
+        let depth = Texture::new(gl, SIZE, Format::Depth32F, Filter::Nearest)?;
+        let mut tile = TileTarget::new(gl, samples)?;
+        // SAFETY: the colour is a 2-D texture of this context.
+        if unsafe { tile.fit(&[(color.color(0).raw(), color.color(0).image())], &depth) }.is_err() {
+            return Ok(false);
+        }
+        let to = tile.part(SIZE);
+        let fill = |origin, size, color| {
+            gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+            gl.fill(origin, size, color);
+        };
+        fill([0, 0], SIZE, [1.0, 0.0, 0.0, 1.0]);
+        let is_red = |pixels: &[u8]| pixels == [255, 0, 0, 255];
+        let is_whole = color.read_rgba8(0, [0, 0], SIZE).chunks_exact(4).all(is_red);
+        fill([1, 1], [1, 1], [0.0, 1.0, 0.0, 1.0]);
+        let pixels = color.read_rgba8(0, [0, 0], SIZE);
+        Ok(is_whole && pixels.chunks_exact(4).filter(|pixel| is_red(pixel)).count() == 15)
     }
 
     /// Returns the lower left part of this size.

@@ -116,6 +116,15 @@ impl Context {
         *self.observed.borrow_mut() = observed;
     }
 
+    /// Does something whose passes draw into images that stay in a tile, from which a later pass writes the result: none of
+    /// them stores what it writes.
+    pub fn within_tile<R>(&self, body: impl FnOnce() -> R) -> R {
+        let before = self.is_in_tile.replace(true);
+        let result = body();
+        self.is_in_tile.set(before);
+        result
+    }
+
     /// Does something with the observer, if there is one.
     pub(crate) fn observe(&self, tell: impl FnOnce(&mut Observed)) {
         if let Some(observed) = &mut *self.observed.borrow_mut() {
@@ -166,9 +175,10 @@ impl Pass<'_> {
         self
     }
 
-    /// Declares images that the pass clears or overwrites, and stores.
+    /// Declares images that the pass clears or overwrites, and stores, unless it is [within a tile](Context::within_tile).
     pub fn write(self, images: impl IntoIterator<Item = Image>) -> Self {
-        self.draw_into(images, false, true)
+        let is_stored = !self.gl.is_in_tile.get();
+        self.draw_into(images, false, is_stored)
     }
 
     /// Declares images that the pass loads, changes and stores.

@@ -110,6 +110,18 @@ impl Context {
         unsafe { self.raw().depth_mask(false) }
     }
 
+    /// Limits what is drawn to a rectangle of the framebuffer until the state is set again; `origin` is its lower left corner
+    /// in pixels. A tile-based GPU neither loads nor stores what is outside.
+    pub fn clip(&self, origin: [u32; 2], size: [u32; 2]) {
+        let gl = self.raw();
+        let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
+        // SAFETY: state calls with valid enums; sizes are not negative.
+        unsafe {
+            gl.enable(glow::SCISSOR_TEST);
+            gl.scissor(x, y, w, h);
+        }
+    }
+
     /// Turns alpha to coverage on or off: a fragment's alpha determines how many samples it covers, and is not stored.
     /// Call it after [`Context::set_raster_state`], and turn it off afterwards.
     pub fn set_alpha_to_coverage(&self, on: bool) {
@@ -155,15 +167,10 @@ impl Context {
 
     /// Like [`Context::clear`], for a rectangle only; `origin` is its lower left corner in pixels.
     pub fn clear_rectangle(&self, origin: [u32; 2], size: [u32; 2], depth: Option<f32>) {
-        let gl = self.raw();
-        let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
-        // SAFETY: state calls with valid enums; sizes are not negative.
-        unsafe {
-            gl.enable(glow::SCISSOR_TEST);
-            gl.scissor(x, y, w, h);
-            self.clear_unmasked(depth);
-            gl.disable(glow::SCISSOR_TEST);
-        }
+        self.clip(origin, size);
+        self.clear_unmasked(depth);
+        // SAFETY: a state call with a valid enum.
+        unsafe { self.raw().disable(glow::SCISSOR_TEST) };
     }
 
     /// Clears all pixels that pass the scissor test.
@@ -186,12 +193,10 @@ impl Context {
     /// Fills a rectangle of the bound framebuffer's colour attachments; `origin` is its lower left corner in pixels.
     pub fn fill(&self, origin: [u32; 2], size: [u32; 2], color: [f32; 4]) {
         let gl = self.raw();
-        let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
-        // SAFETY: state calls with valid enums; sizes are not negative.
+        self.clip(origin, size);
+        // SAFETY: state calls with valid enums.
         unsafe {
             gl.color_mask(true, true, true, true);
-            gl.enable(glow::SCISSOR_TEST);
-            gl.scissor(x, y, w, h);
             gl.clear_color(color[0], color[1], color[2], color[3]);
             gl.clear(glow::COLOR_BUFFER_BIT);
             gl.disable(glow::SCISSOR_TEST);

@@ -8,8 +8,8 @@ use glam::{Mat4, Quat, Vec2, Vec4};
 use crate::hud::Panel;
 use crate::optics::{Optics, mesh_strip};
 use yoro::eyes::{Composition, Eye, EyePair, Frustum};
-use yoro::opengl::LevelImages;
-use yoro_gl::{Context, Destination, Format, GlError, Mesh, Program, RasterState, ShaderSource, Texture};
+use yoro::opengl::{LevelImages, Part};
+use yoro_gl::{Context, Destination, Format, GlError, Mesh, Program, RasterState, ShaderSource};
 
 /// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are specified. For
 /// acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
@@ -68,24 +68,28 @@ impl LensPass {
         })
     }
 
-    /// Fills the window from the images of the left and the right eye. `turn` rotates directions from the head's
-    /// current frame to its frame when the images were rendered.
-    pub fn run(&self, images: [&Texture; 2], turn: Quat, window: &Destination) {
-        self.draw(&self.program, turn, window, |eye| {
-            self.program.texture("image", 0, images[eye.index()].raw());
-        });
-    }
-
-    /// Like [`LensPass::run`], for eyes of levels, which are composed on the way: for each eye its images, filtered
-    /// linearly, and their places. A panel is drawn over them, as these eyes see it. Draws nothing if it was not made for
-    /// levels.
-    pub fn run_levels(
+    /// Fills the window from the left and the right eye: for each its images, filtered linearly, and their places. Eyes of
+    /// levels are composed on the way, and a panel is drawn over them, as these eyes see it; nothing is drawn if the pass was
+    /// not made for levels. `turn` rotates directions from the head's current frame to its frame when the images were
+    /// rendered.
+    pub fn run(
         &self,
         eyes: &[(LevelImages, Composition); 2],
         panel: Option<(&Panel, &EyePair)>,
         turn: Quat,
         window: &Destination,
     ) {
+        if eyes.iter().all(|(images, _)| images.inset.is_none()) {
+            return self.draw(&self.program, turn, window, |eye| {
+                let (LevelImages { wide, .. }, composition) = &eyes[eye.index()];
+                let place = wide.part.map_or(Vec4::new(1.0, 1.0, 0.0, 0.0), |Part { origin, image_size }| {
+                    let [[w, h], [x, y]] = [composition.wide.size, origin]
+                        .map(|n| [0, 1].map(|i| n[i] as f32 / image_size[i] as f32));
+                    Vec4::new(w, h, x, y)
+                });
+                self.program.set("image_place", place).texture("image", 0, wide.color);
+            });
+        }
         let Some(program) = &self.of_levels else { return };
         self.draw(program, turn, window, |eye| {
             let (images, composition) = &eyes[eye.index()];
@@ -135,6 +139,8 @@ mod tests {
     use super::*;
     use crate::optics::{Distortion, MESH_RESOLUTION, Rotation, Screen};
     use crate::params::ViewerParams;
+    use yoro::eyes::LevelPlace;
+    use yoro::opengl::LevelImage;
     use yoro_context::{Backend, Headless};
     use yoro_gl::{Filter, RenderTarget};
 
@@ -175,15 +181,50 @@ mod tests {
         })
     }
 
+    /// Returns eyes that fill their images, or are this part of them.
+    fn shown(eyes: &[RenderTarget; 2], part: Option<(Part, [u32; 2])>) -> [(LevelImages, Composition); 2] {
+        eyes.each_ref().map(|eye| {
+            let size = part.map_or(eye.size(), |(_, size)| size);
+            let wide = LevelImage { color: eye.color(0).raw(), part: part.map(|(part, _)| part) };
+            let place = LevelPlace { size, scale: [1.0; 2], offset: [0.0; 2] };
+            (LevelImages { wide, inset: None }, Composition { size, wide: place, inset: None })
+        })
+    }
+
+    /// An eye that is a part of its image looks as in an image of its own.
+    #[test]
+    fn an_eye_may_be_a_part_of_its_image() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let (gl, optics) = (headless.gl(), optics());
+        let (eyes, window) = (marked_eyes(gl, &optics), window(gl));
+        let part = Part { origin: [37, 5], image_size: [320, 270] };
+        let around = eyes.each_ref().map(|eye| {
+            let image =
+                RenderTarget::new(gl, part.image_size, &[(Format::Rgba8, Filter::Linear)], None).unwrap();
+            image.bind();
+            gl.fill([0, 0], part.image_size, [0.0, 1.0, 0.0, 1.0]);
+            let to = Destination { origin: part.origin, size: eye.size(), ..Destination::whole(&image) };
+            eye.copy_color([0, 0], &to);
+            image
+        });
+        let lens = LensPass::new(gl, &optics, false, false).unwrap();
+        let [whole, cropped] =
+            [shown(&eyes, None), shown(&around, Some((part, eyes[0].size())))].map(|eyes| {
+                lens.run(&eyes, None, Quat::from_rotation_y(0.2), &Destination::whole(&window));
+                window.read_rgba8(0, [0, 0], WINDOW)
+            });
+        let largest = whole.iter().zip(&cropped).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(largest <= Some(1), "{largest:?} levels");
+    }
+
     #[test]
     fn each_eye_sees_its_own_image_around_its_lens() {
         let headless = Headless::open(Backend::Egl).unwrap();
         let (gl, optics) = (headless.gl(), optics());
         let (eyes, window) = (marked_eyes(gl, &optics), window(gl));
-        let images = eyes.each_ref().map(|eye| eye.color(0));
         for chromatic in [false, true] {
             let lens = LensPass::new(gl, &optics, chromatic, false).unwrap();
-            lens.run(images, Quat::IDENTITY, &Destination::whole(&window));
+            lens.run(&shown(&eyes, None), None, Quat::IDENTITY, &Destination::whole(&window));
             for (eye, color) in Eye::BOTH.into_iter().zip([[255, 0, 0, 255], [0, 0, 255, 255]]) {
                 let center = optics.lens_center(eye);
                 assert_eq!(pixel(&window, center), [255; 4], "straight ahead is at the lens's centre");
@@ -222,10 +263,9 @@ mod tests {
         let headless = Headless::open(Backend::Egl).unwrap();
         let (gl, optics) = (headless.gl(), optics());
         let (eyes, window) = (marked_eyes(gl, &optics), window(gl));
-        let images = eyes.each_ref().map(|eye| eye.color(0));
         let lens = LensPass::new(gl, &optics, false, false).unwrap();
         let at = |turn| {
-            lens.run(images, turn, &Destination::whole(&window));
+            lens.run(&shown(&eyes, None), None, turn, &Destination::whole(&window));
             mark(&window, &optics)
         };
         let still = at(Quat::IDENTITY);

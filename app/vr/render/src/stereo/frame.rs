@@ -37,11 +37,17 @@ impl<'a> Frame<'a> {
     ) -> Result<Frame<'a>, StereoError> {
         renderer.check_scene(scene)?;
         let convention = layer.eyes.depth.convention;
-        let layer = ViewLayer { eyes: reversed(&layer.eyes), ..*layer };
+        let layer = Frame::rendered_layer(layer);
         let scene = shown.map_or(scene.into(), |shown| LitScene::of_eyes(scene, shown));
         let near = RefCell::new(None);
         let pair = layer.eyes;
         Ok(Frame { renderer, scene, pair, layer, convention, to, fills_holes: false, near })
+    }
+
+    /// Returns a layer with reversed depth, which half floats and samples can carry.
+    pub(super) fn rendered_layer(layer: &ViewLayer) -> ViewLayer {
+        let depth = DepthRange { convention: DepthConvention::Reversed, ..layer.eyes.depth };
+        ViewLayer { eyes: EyePair { depth, ..layer.eyes }, ..*layer }
     }
 
     /// Gives the frame what measures the dominant eye's depth, if anything does.
@@ -91,9 +97,4 @@ impl<'a> Frame<'a> {
             to.copy.run(from, &to.to, self.convention);
         }
     }
-}
-
-/// Returns the same eyes with reversed depth, which half floats and samples can carry.
-fn reversed(pair: &EyePair) -> EyePair {
-    EyePair { depth: DepthRange { convention: DepthConvention::Reversed, ..pair.depth }, ..*pair }
 }

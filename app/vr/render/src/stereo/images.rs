@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::method::{DepthTarget, EyeTarget, StereoFrame};
 use crate::view::{DepthCopy, DepthImage};
 use yoro::eyes::{Composition, DepthConvention, Eye, EyePair, InsetPlace, StereoViews};
-use yoro::opengl::{Composer, GlState, InsetImage, LevelImage, LevelImages};
+use yoro::opengl::{Composer, GlState, InsetImage, LevelImages, Part};
 use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
 
 /// The targets of a frame by layer and [`Eye::index`]. Each has the size of its layer.
@@ -68,15 +68,18 @@ impl StereoImages {
         })
     }
 
-    /// Fits the images to views, and returns them as targets. `is_synthesized` says whether one of the eyes will be. Allocates
-    /// nothing while sizes stay.
+    /// Fits the images to views, and returns them as targets. `is_synthesized` says whether one of the eyes will be, and
+    /// `parts` of which image the dominant eye is a part, in the wide layer and in the inset. Allocates nothing while sizes
+    /// stay.
     pub(super) fn fit(
         &mut self,
         views: &StereoViews,
         is_synthesized: bool,
+        parts: [Option<Part>; 2],
     ) -> Result<LayerTargets<'_>, GlError> {
         self.views = Some(*views);
-        self.wide.resize(views.wide.eyes.size)?;
+        let [wide_part, inset_part] = parts.map(|part| Some((views.shown.dominant, part?)));
+        self.wide.resize_around(views.wide.eyes.size, wide_part)?;
         let mut wide: [EyeTarget; 2] = self.wide.targets();
         self.has_depth = is_synthesized && views.inset.is_some();
         let Some(layer) = &views.inset else { return Ok(LayerTargets { wide, inset: None }) };
@@ -84,7 +87,7 @@ impl StereoImages {
             Some(inset) => inset,
             slot => slot.insert(StereoFrame::new(&self.gl, layer.eyes.size)?),
         };
-        inset.resize(layer.eyes.size)?;
+        inset.resize_around(layer.eyes.size, inset_part)?;
         if is_synthesized {
             let depth = match &mut self.depth {
                 Some(depth) => depth,
@@ -133,12 +136,11 @@ impl StereoImages {
     /// first frame.
     pub fn eye(&self, eye: Eye) -> Option<(LevelImages, Composition)> {
         let views = self.views.as_ref()?;
-        let image = |frame: &StereoFrame| LevelImage::new(frame.eye(eye).color(0).raw());
         let inset = self.inset.as_ref().filter(|_| views.inset.is_some());
         let depth = self.depth.as_ref().filter(|_| self.has_depth && eye != views.shown.dominant);
         let depth = depth.map(|depth| depth.inset.depth().raw());
-        let inset = inset.map(|inset| InsetImage { image: image(inset), depth });
-        Some((LevelImages { wide: image(&self.wide), inset }, views.composition(eye)))
+        let inset = inset.map(|inset| InsetImage { image: inset.level(eye), depth });
+        Some((LevelImages { wide: self.wide.level(eye), inset }, views.composition(eye)))
     }
 
     /// Completes the images, and composes both eyes into their targets, by [`Eye::index`].

@@ -5,8 +5,9 @@ use std::rc::Rc;
 use super::frame::Frame;
 use super::session::FrameTargets;
 use crate::view::{DepthCopy, GpuScene, Renderer};
-use yoro::eyes::{DepthRange, Eye, EyesError, Ndc, StereoViews, View};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, Image, RenderTarget, Texture};
+use yoro::eyes::{Composition, DepthRange, Eye, EyesError, LevelPlace, Ndc, StereoViews, View, ViewLayer};
+use yoro::opengl::{LevelImage, LevelImages, Part};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, Image, RenderTarget};
 
 /// The reason why a stereo frame could not be rendered.
 #[derive(Debug, thiserror::Error)]
@@ -20,9 +21,14 @@ pub enum StereoError {
     Gl(#[from] GlError),
 }
 
-/// The finished images of a frame: [`Format::Rgba8`], display-referred sRGB with luma in alpha.
+/// The finished images of a frame: [`Format::Rgba8`], display-referred sRGB with luma in alpha. An eye may be a part of its
+/// image.
 pub struct StereoFrame {
-    eyes: [RenderTarget; 2],
+    images: [RenderTarget; 2],
+    /// Width and height of the eyes in pixels.
+    size: [u32; 2],
+    /// Lower left corner of each eye in its image.
+    corners: [[u32; 2]; 2],
 }
 
 impl StereoFrame {
@@ -31,16 +37,28 @@ impl StereoFrame {
     /// # Errors
     /// As [`RenderTarget::new`].
     pub fn new(gl: &Rc<Context>, size: [u32; 2]) -> Result<StereoFrame, GlError> {
-        let eye = || RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Linear)], None);
-        Ok(StereoFrame { eyes: [eye()?, eye()?] })
+        let image = || RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Linear)], None);
+        Ok(StereoFrame { images: [image()?, image()?], size, corners: [[0, 0]; 2] })
     }
 
-    /// Resizes the images. Does nothing if they already have this size.
+    /// Resizes the images to that of the eyes. Does nothing if they already have this size.
     ///
     /// # Errors
     /// As [`RenderTarget::resize`].
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
-        self.eyes.iter_mut().try_for_each(|eye| eye.resize(size))
+        self.resize_around(size, None)
+    }
+
+    /// Resizes the images to that of the eyes, and one of them to the image of which the eye is a part.
+    pub(super) fn resize_around(&mut self, size: [u32; 2], part: Option<(Eye, Part)>) -> Result<(), GlError> {
+        self.size = size;
+        for eye in Eye::BOTH {
+            let own = part.filter(|(of, _)| *of == eye).map(|(_, part)| part);
+            let Part { origin, image_size } = own.unwrap_or(Part { origin: [0, 0], image_size: size });
+            self.corners[eye.index()] = origin;
+            self.images[eye.index()].resize(image_size)?;
+        }
+        Ok(())
     }
 
     /// Resizes the images, and returns them as targets of a frame, without depth.
@@ -52,34 +70,47 @@ impl StereoFrame {
         Ok(FrameTargets::Eyes(self.targets()))
     }
 
-    /// Returns one eye's image.
+    /// Returns the image of which one eye is a part, or all.
     pub fn eye(&self, eye: Eye) -> &RenderTarget {
-        &self.eyes[eye.index()]
+        &self.images[eye.index()]
     }
 
-    /// Returns the width and height of the images in pixels.
+    /// Returns the width and height of the eyes in pixels.
     pub fn size(&self) -> [u32; 2] {
-        self.eyes[0].size()
+        self.size
     }
 
     /// Returns one eye's pixels, 4 bytes each, rows from the bottom.
     pub fn rgba(&self, eye: Eye) -> Vec<u8> {
-        self.eye(eye).read_rgba8(0, [0, 0], self.size())
+        self.eye(eye).read_rgba8(0, self.corners[eye.index()], self.size)
     }
 
-    /// Returns both images, left and right.
-    pub fn images(&self) -> [&Texture; 2] {
-        self.eyes.each_ref().map(|eye| eye.color(0))
-    }
-
-    /// Returns both images as targets, without depth.
+    /// Returns both eyes as targets, without depth.
     pub fn targets(&self) -> [EyeTarget<'static>; 2] {
-        Eye::BOTH.map(|eye| EyeTarget::of(self.eye(eye)))
+        Eye::BOTH.map(|eye| {
+            let target = EyeTarget::of(self.eye(eye));
+            let color = Destination { origin: self.corners[eye.index()], size: self.size, ..target.color };
+            EyeTarget { color, ..target }
+        })
     }
 
-    /// Returns both images as destinations, by [`Eye::index`].
+    /// Returns both eyes as destinations, by [`Eye::index`].
     pub fn colors(&self) -> [Destination; 2] {
         self.targets().map(|target| target.color)
+    }
+
+    /// Returns one eye as a level for a pass that reads it.
+    pub(super) fn level(&self, eye: Eye) -> LevelImage {
+        let color = self.eye(eye).color(0);
+        let part = Part { origin: self.corners[eye.index()], image_size: color.size() };
+        LevelImage { color: color.raw(), part: Some(part) }
+    }
+
+    /// Returns both eyes for a pass that reads them, by [`Eye::index`]: of a single level.
+    pub fn levels(&self) -> [(LevelImages, Composition); 2] {
+        let wide = LevelPlace { size: self.size, scale: [1.0; 2], offset: [0.0; 2] };
+        let composition = Composition { size: self.size, wide, inset: None };
+        Eye::BOTH.map(|eye| (LevelImages { wide: self.level(eye), inset: None }, composition))
     }
 }
 
@@ -88,8 +119,11 @@ impl StereoFrame {
 pub struct EyeTarget<'a> {
     /// Receives display-referred sRGB with luma in alpha, and stores it as written.
     pub color: Destination,
-    /// The 2-D texture of which `color` is the first level, if it is one: samples of a tile-based GPU are then averaged
-    /// into it without a copy. It must live as long as the target is used.
+    /// The 2-D texture whose first level has `color`, and nothing else that is needed, if it is one: samples of a tile-based
+    /// GPU are then averaged into it without a copy. It must live as long as the target is used.
+    ///
+    /// If it has the size of the view that a method renders for the eye, and the eye's place in that view, the view is
+    /// rendered into the texture.
     pub texture: Option<(glow::Texture, Image)>,
     /// Receives the eye's window depth; `None` if it is not needed.
     pub depth: Option<DepthTarget<'a>>,
@@ -107,6 +141,15 @@ impl EyeTarget<'_> {
             depth: None,
             motion: None,
         }
+    }
+
+    /// Returns the texture as the target of a view of which the eye is this part, if the texture is as large as the view and
+    /// the eye has this place in it.
+    pub(super) fn around(&self, part: Part) -> Option<EyeTarget<'static>> {
+        let fits = |texture: &(glow::Texture, Image)| texture.1.size == part.image_size;
+        let texture = self.texture.filter(|texture| fits(texture) && self.color.origin == part.origin)?;
+        let color = Destination { origin: [0, 0], size: part.image_size, ..self.color };
+        Some(EyeTarget { texture: Some(texture), ..EyeTarget::rectangle(color) })
     }
 
     /// Clears the depth to the farthest of a range, if the target has depth.
@@ -160,6 +203,12 @@ pub(super) trait StereoMethod {
     /// # Errors
     /// [`StereoError`] if GL refuses.
     fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError>;
+
+    /// Returns the dominant eye's place in the view that is rendered for a layer, if that view can be rendered where the eye
+    /// is shown: nothing of it is changed later but the eye's own pixels.
+    fn rendered_part(&self, _: &Renderer, _: &GpuScene, _: &ViewLayer) -> Option<Part> {
+        None
+    }
 
     /// Renders both eyes of a layer into their targets. Returns true if motion vectors were written.
     ///

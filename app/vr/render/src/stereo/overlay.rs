@@ -18,22 +18,13 @@ pub(super) struct OverlaySurfaces {
     pub(super) transparent: bool,
     /// True if the eye's holes are left open, for opaque surfaces to be drawn there first.
     pub(super) holes: bool,
-    /// True if motion vectors are made of the eye's depth.
-    pub(super) vectors: bool,
+    /// True if the eye's depth is read afterwards.
+    pub(super) keeps_depth: bool,
 }
 
 impl OverlaySurfaces {
-    /// True if the eye's depth is read afterwards.
-    fn keeps_depth(&self, frame: &Frame, eye: Eye) -> bool {
-        frame.wants_depth(eye) || self.vectors
-    }
-
-    /// Returns the part of an eye in which its depth is needed: where transparent surfaces are drawn over it, or all of it
-    /// if its depth is wanted.
+    /// Returns the part of an eye in which its depth is needed: where transparent surfaces are drawn over it.
     pub(super) fn depth_part(&self, frame: &Frame, eye: Eye) -> Option<Rectangle> {
-        if frame.wants_depth(eye) {
-            return Some(Rectangle::whole(frame.pair.size));
-        }
         frame.scene.transparent_part(&frame.pair.view(eye)).filter(|_| self.transparent)
     }
 }
@@ -49,7 +40,7 @@ pub(super) struct OverlayPass {
     depth: Format,
     /// Samples outside tiles.
     multisample: Option<MultisampleTarget>,
-    /// Samples in tiles, and the depth of one eye, which is never written.
+    /// Samples in tiles, or one sample, in the eye's own texture; and the depth of one eye, which is never kept.
     tile: Option<(TileTarget, Option<Texture>)>,
     /// One sample.
     image: Option<RenderTarget>,
@@ -72,7 +63,8 @@ impl OverlayPass {
     /// Makes it without images; with `holes`, for eyes whose holes may be left open.
     pub(super) fn new(renderer: &Renderer, holes: bool) -> Result<OverlayPass, GlError> {
         let (gl, samples) = (&renderer.gl, renderer.settings.msaa);
-        let tile = (samples > 1 && gl.capabilities().tile_samples).then(|| TileTarget::new(gl, samples));
+        let has_tile = samples == 1 || gl.capabilities().tile_samples;
+        let tile = has_tile.then(|| TileTarget::new(gl, samples));
         Ok(OverlayPass {
             gl: gl.clone(),
             samples,
@@ -105,7 +97,7 @@ impl OverlayPass {
         over: &OverlaySurfaces,
     ) -> Result<(Destination, bool), GlError> {
         let (to, size) = (frame.to(eye), frame.pair.size);
-        let keeps_depth = over.keeps_depth(frame, eye);
+        let keeps_depth = over.keeps_depth;
         let is_drawn_over = over.transparent || over.holes;
         if !is_drawn_over && !keeps_depth {
             self.target = OverlayTarget::Direct;
@@ -139,6 +131,14 @@ impl OverlayPass {
         Ok((Destination::whole(self.fit_image(size)?), true))
     }
 
+    /// Does what writes the current eye into the place that [`OverlayPass::begin`] returned.
+    pub(super) fn draw<R>(&self, body: impl FnOnce() -> R) -> R {
+        match self.target {
+            OverlayTarget::Samples | OverlayTarget::Tile => self.gl.within_tile(body),
+            OverlayTarget::Direct | OverlayTarget::Image => body(),
+        }
+    }
+
     /// Returns the image of one sample, with this size.
     fn fit_image(&mut self, size: [u32; 2]) -> Result<&RenderTarget, GlError> {
         let image = match &mut self.image {
@@ -164,10 +164,10 @@ impl OverlayPass {
         self.image.as_ref().map(|made| image(made.depth()))
     }
 
-    /// Attaches an eye's texture to the tiles; false if there are no such tiles, or no texture.
+    /// Attaches an eye's texture; false if there is none, or the driver has no samples in tiles.
     fn fit_tile(&mut self, to: Option<((glow::Texture, yoro_gl::Image), [u32; 2])>) -> Result<bool, GlError> {
         let (Some((tile, depth)), Some((color, size))) = (&mut self.tile, to) else { return Ok(false) };
-        if color.1.size != size {
+        if (0..2).any(|i| color.1.size[i] < size[i]) {
             return Ok(false);
         }
         let depth = match depth.take().filter(|depth| depth.size() == size) {
@@ -197,7 +197,7 @@ impl OverlayPass {
         match (self.target, &self.multisample, &self.tile, &self.image) {
             (OverlayTarget::Samples, Some(samples), ..) => {
                 let pass = self.gl.pass("resolve").in_tile(samples.images());
-                let depth = self.image.as_ref().filter(|_| over.keeps_depth(frame, eye));
+                let depth = self.image.as_ref().filter(|_| over.keeps_depth);
                 let pass = pass.write(depth.map(|image| image.depth().image()));
                 pass.write([frame.to(eye).color.image(Format::Rgba8)]).run(|| {
                     samples.average(0, &frame.to(eye).color);
@@ -210,7 +210,10 @@ impl OverlayPass {
                     frame.write_depth(eye, &depth);
                 }
             }
-            (OverlayTarget::Tile, _, Some((tile, _)), _) => tile.discard_depth(),
+            (OverlayTarget::Tile, _, Some((tile, _)), _) => {
+                let pass = self.gl.pass("resolve").write([frame.to(eye).color.image(Format::Rgba8)]);
+                pass.run(|| tile.discard_depth());
+            }
             (OverlayTarget::Image, .., Some(image)) => {
                 let to = &frame.to(eye).color;
                 let pass = self.gl.pass("copy").read("copied", image.color(0));

@@ -13,6 +13,7 @@ use crate::prepared::PreparedScene;
 use crate::view::RenderSettings;
 use yoro::choice::{Cost, StereoPath};
 use yoro::eyes::StereoViews;
+use yoro::opengl::Part;
 use yoro_gl::{Context, GlError};
 use yoro_settings::FrameRate;
 
@@ -37,7 +38,7 @@ impl FrameTargets<'_> {
     /// [`GlError`] if the driver has no memory for the images.
     pub fn fill(self, gl: &Context, views: &StereoViews, color: [f32; 4]) -> Result<(), GlError> {
         let layers = match self {
-            FrameTargets::Images(images) => images.fit(views, false)?,
+            FrameTargets::Images(images) => images.fit(views, false, [None; 2])?,
             FrameTargets::Layers(layers) => layers,
             FrameTargets::Eyes(wide) => LayerTargets { wide, inset: None },
         };
@@ -219,6 +220,11 @@ impl StereoSession {
         }
         let Plan { path, fallback, counts } = self.plan(views, scene)?;
         let is_synthesized = path != StereoPath::TwoViews && self.method == Method::Synthesized;
+        // Of the synthesis on every path, since they take turns: images keep their sizes.
+        let parts = self.chosen.rendered_parts(scene, views).map(|part| match path {
+            StereoPath::TwoViews => part.map(|part| Part { origin: [0, 0], ..part }),
+            _ => part,
+        });
         // Eyes with an inset are composed of images of this session.
         let mut own = match &targets {
             FrameTargets::Eyes(_) if views.inset.is_some() => Some(self.take_images()?),
@@ -226,11 +232,11 @@ impl StereoSession {
         };
         let mut targets = targets;
         let to = match (&mut targets, &mut own) {
-            (FrameTargets::Images(images), _) => images.fit(views, is_synthesized)?,
+            (FrameTargets::Images(images), _) => images.fit(views, is_synthesized, parts)?,
             (FrameTargets::Layers(layers), _) => *layers,
             (FrameTargets::Eyes(to), None) => LayerTargets { wide: *to, inset: None },
             (FrameTargets::Eyes(to), Some(images)) => {
-                self.layers_of(images.fit(views, is_synthesized)?, views, to)
+                self.layers_of(images.fit(views, is_synthesized, parts)?, views, to)
             }
         };
         if let Some(auto) = self.auto.as_mut().filter(|_| counts)
@@ -371,6 +377,15 @@ impl LayerMethods {
             }
         };
         Ok(self.inset.insert(inset).as_mut())
+    }
+
+    /// Returns the dominant eye's place in the view that is rendered for the wide layer, and for the inset, if that view is
+    /// rendered where the eye is shown.
+    fn rendered_parts(&self, scene: &PreparedScene, views: &StereoViews) -> [Option<Part>; 2] {
+        [Some(&views.wide), views.inset.as_ref()].map(|layer| {
+            let layer = Frame::rendered_layer(layer?);
+            self.wide.rendered_part(&scene.renderer, &scene.scene, &layer)
+        })
     }
 
     /// Renders all layers of a frame along a path. `near` measures the depth of the wide one. Returns true if its motion

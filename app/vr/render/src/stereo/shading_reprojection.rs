@@ -71,8 +71,11 @@ impl StereoMethod for ShadingReprojection {
         let surfaces = OverlaySurfaces { transparent, ..OverlaySurfaces::default() };
         let (place, has_depth) = over.begin(frame, eye, &surfaces)?;
         let part = surfaces.depth_part(frame, eye).filter(|_| has_depth);
-        renderer.composite(dominant, &view, Eye::Left, [0, 0], &place, part);
+        over.draw(|| renderer.composite(dominant, &view, Eye::Left, [0, 0], &place, part));
         over.finish(frame, eye, &surfaces);
+        if frame.wants_depth(eye) {
+            frame.write_depth(eye, &dominant.depth(view.size, Eye::Left, [0, 0]));
+        }
         Ok(false)
     }
 }

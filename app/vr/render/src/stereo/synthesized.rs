@@ -8,9 +8,11 @@ use super::motion::SynthesizedMotion;
 use super::options::{HoleMethod, Pipeline, PipelineOptions, StereoOptions};
 use super::overlay::{OverlayPass, OverlaySurfaces};
 use super::pipeline::Synthesis;
-use crate::view::{DepthResolve, GpuScene, HoleSource, InkedHoles, Layout, RenderedDepth, Renderer, Targets};
-use yoro::eyes::{Eye, SynthesisViews};
-use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Source};
+use crate::view::{
+    DepthResolve, GpuScene, HoleSource, InkedHoles, Layout, Rectangle, RenderedDepth, Renderer, Targets,
+};
+use yoro::eyes::{Eye, SynthesisViews, ViewLayer};
+use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Part, Source};
 use yoro::synthesis::{HoleMark, Holes};
 use yoro_gl::{Context, Destination, GlError};
 
@@ -20,7 +22,8 @@ use yoro_gl::{Context, Destination, GlError};
 /// have in the rendered eye.
 ///
 /// Bloom is added where an eye is written last: by the synthesis, and where the rendered eye is composited. Transparent
-/// surfaces are drawn over both in the same passes.
+/// surfaces are drawn over both in the same passes. Where nothing follows the surfaces, the view is rendered where the
+/// rendered eye is shown, if its target has room for it, and transparent surfaces are drawn over it there.
 pub struct Synthesized {
     gl: Rc<Context>,
     options: StereoOptions,
@@ -135,9 +138,17 @@ impl StereoMethod for Synthesized {
         Ok(())
     }
 
+    fn rendered_part(&self, renderer: &Renderer, scene: &GpuScene, layer: &ViewLayer) -> Option<Part> {
+        let is_kept = renderer.is_complete() && (renderer.loads_pictures || !scene.has_transparent());
+        let views = is_kept.then(|| layer.synthesis_views(self.options.guard_band).ok()).flatten()?;
+        Some(Part { origin: views.dominant_crop, image_size: views.source.size })
+    }
+
     fn render(&mut self, frame: &Frame) -> Result<bool, StereoError> {
         let pair = &frame.pair;
         let renderer = frame.renderer;
+        let part = self.rendered_part(renderer, &frame.scene, &frame.layer);
+        let shown = part.and_then(|part| frame.to(pair.dominant).around(part));
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let views = frame.synthesis_views(self.options.guard_band)?;
         let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
@@ -147,15 +158,16 @@ impl StereoMethod for Synthesized {
         let Some(Made { targets, over, inked, synthesizers, guess }) = &mut self.made else {
             return Ok(false);
         };
-        renderer.draw_source(targets, &frame.scene, &views.source)?;
+        let is_shown = renderer.draw_source(targets, &frame.scene, &views.source, shown.as_ref())?;
         let is_composited = composites_first && renderer.has_composite();
         if is_composited {
-            let to = Destination::whole(targets.picture(views.source.size)?);
+            let to = Destination::whole(targets.complete_picture(views.source.size)?);
             renderer.composite(targets, &views.source, Eye::Left, [0, 0], &to, None);
         }
-        let picture = targets.composited.as_ref().filter(|_| is_composited).unwrap_or(targets.color());
+        let composited = targets.composited.as_ref().filter(|_| is_composited);
+        let picture = composited.map_or(targets.picture().0, |picture| picture.color(0).raw());
         let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
-        let mut source = Source::new(picture.color(0).raw(), depth.texture.raw());
+        let mut source = Source::new(picture, depth.texture.raw());
         if let Some(guess) = guess {
             source = guess.guess(source, &views.warp)?;
         }
@@ -166,17 +178,19 @@ impl StereoMethod for Synthesized {
             .map(|bloom| Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() });
         // The other eye first: both are finished in the same samples.
         let vectors = renders_holes && frame.to(other).motion.is_some();
-        let other_surfaces = OverlaySurfaces { holes: renders_holes, vectors, ..surfaces };
+        let keeps_depth = frame.wants_depth(other) || vectors;
+        let other_surfaces = OverlaySurfaces { holes: renders_holes, keeps_depth, ..surfaces };
         let (to, has_depth) = over.begin(frame, other, &other_surfaces)?;
-        if renders_holes {
-            let synthesis = synthesizers.get(Kind::OpenHoles)?;
-            let samples = over.samples();
-            let rendered = Rendered { source, targets, views: &views };
-            rendered.render_other(frame, synthesis.as_mut(), inked.as_mut(), (&to, samples))?;
-        } else {
-            let kind = if has_depth { Kind::ColorDepth } else { Kind::Color };
-            synthesizers.get(kind)?.synthesize(source, &views.warp, &to)?;
-        }
+        over.draw(|| {
+            if renders_holes {
+                let synthesis = synthesizers.get(Kind::OpenHoles)?;
+                let rendered = Rendered { source, targets, views: &views };
+                rendered.render_other(frame, synthesis.as_mut(), inked.as_mut(), (&to, over.samples()))
+            } else {
+                let kind = if has_depth { Kind::ColorDepth } else { Kind::Color };
+                synthesizers.get(kind)?.synthesize(source, &views.warp, &to)
+            }
+        })?;
         over.finish(frame, other, &other_surfaces);
         let Some(Made { targets, over, .. }) = &mut self.made else { return Ok(false) };
         let rendered = targets.depth(views.source.size, Eye::Left, [0, 0]);
@@ -185,11 +199,22 @@ impl StereoMethod for Synthesized {
         if let (Some(motion), Some(depth)) = (&mut self.motion, over.depth().filter(|_| vectors)) {
             has_motion = motion.write_known(frame, rendered, &depth)?;
         }
-        frame.measure_depth(&targets.depth(views.source.size, Eye::Left, views.dominant_crop))?;
-        let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
-        let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
-        renderer.composite(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
-        over.finish(frame, dominant, &surfaces);
+        let depth = targets.depth(views.source.size, Eye::Left, views.dominant_crop);
+        frame.measure_depth(&depth)?;
+        frame.write_depth(dominant, &depth);
+        if let Some(shown) = shown.filter(|_| is_shown) {
+            let seen = Rectangle { origin: views.dominant_crop, size: pair.size };
+            renderer.draw_over_source(targets, &frame.scene, &views.source, seen, &shown)?;
+        } else {
+            let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
+            let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
+            over.draw(|| {
+                renderer.composite(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
+            });
+            over.finish(frame, dominant, &surfaces);
+        }
+        let rendered = targets.depth(views.source.size, Eye::Left, [0, 0]);
+        let rendered = RenderedDepth { depth: &rendered, view: &views.source };
         let Some(motion) = self.motion.as_mut().filter(|_| !vectors) else { return Ok(has_motion) };
         motion.write(frame, rendered, self.options.guard_band)
     }

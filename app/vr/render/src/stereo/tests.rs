@@ -15,8 +15,8 @@ use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_assets::{Alpha, Material, Model, Motion, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{
-    Context, Declaration, Destination, Draw, Filter, Format, Observer, Profiling, Program, RasterState,
-    RenderTarget, ShaderSource,
+    Context, Declaration, Destination, Draw, Filter, Format, Image, Observer, Profiling, Program,
+    RasterState, RenderTarget, ShaderSource,
 };
 
 const SIZE: [u32; 2] = [160, 120];
@@ -321,15 +321,20 @@ impl Observer for Noting {
 fn passes_declare_what_they_read_and_write() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
-    let mut rig = Rig::new(gl, &local());
-    let mut method = session(gl, Method::Synthesized, &local());
     let pair = pair(Eye::Right, DepthConvention::Reversed);
-    rig.render(&mut method, &pair);
-    let noted = Rc::<RefCell<Noted>>::default();
-    gl.set_observer(Some(Box::new(Noting(noted.clone()))));
-    rig.render(&mut method, &pair);
-    gl.set_observer(None);
-    let Noted { declared, open, drawn } = &*noted.borrow();
+    let note = |settings: &RenderSettings, scene| {
+        let (mut rig, mut method) =
+            (Rig::of(gl, settings, scene), session(gl, Method::Synthesized, settings));
+        rig.render(&mut method, &pair);
+        let noted = Rc::<RefCell<Noted>>::default();
+        gl.set_observer(Some(Box::new(Noting(noted.clone()))));
+        rig.render(&mut method, &pair);
+        gl.set_observer(None);
+        noted.take()
+    };
+    let mut opaque = scene();
+    opaque.model.parts.pop();
+    let Noted { declared, open, drawn } = &note(&local(), opaque);
     assert!(open.is_empty() && drawn.iter().all(|(pass, _)| !pass.is_empty()), "{drawn:?}");
     let find = |name: &str| declared.iter().find(|pass| pass.name == name).unwrap();
     let wide = find("surfaces").writes[0].image;
@@ -339,6 +344,15 @@ fn passes_declare_what_they_read_and_write() {
     assert_eq!((color.image.size, march.writes[0].image.size), (wide.size, SIZE));
     assert!(march.writes[0].is_stored && !march.writes[0].is_loaded);
     assert!(drawn.contains(&("gather march", SIZE)), "{drawn:?}");
+    // Under glass, too, each eye is stored once, and its depth not at all.
+    for settings in [local(), smooth(), RenderSettings { bloom: true, ..smooth() }] {
+        let Noted { declared, .. } = note(&settings, scene());
+        let writes = declared.iter().flat_map(|pass| &pass.writes);
+        let stored =
+            writes.filter(|write| write.is_stored && write.image.size == SIZE).map(|write| write.image);
+        let stored: Vec<Image> = stored.collect();
+        assert!(stored.len() == 2 && stored.iter().all(|image| image.format == Format::Rgba8), "{stored:?}");
+    }
 }
 
 /// Settings with several samples in each pixel.
@@ -434,6 +448,42 @@ fn nothing_is_copied_unless_depth_is_read() {
         let mut rig = Rig::new(gl, &settings);
         let mut method = session(gl, method, &settings);
         assert_eq!(count_passes(gl, &mut rig, &mut method, [false; 2], "copy"), 0);
+    }
+}
+
+/// Without bloom, the view with its guard band is rendered where the dominant eye is shown. The picture is that of an eye that
+/// is copied out of the view, glass included, on every kind of driver.
+#[test]
+fn an_eye_is_shown_where_it_is_rendered() {
+    type Limit = fn(&mut yoro_gl::Capabilities);
+    let limits: [Limit; 4] = [
+        |_| {},
+        |capabilities| capabilities.tile_samples = false,
+        |capabilities| (capabilities.tile_samples, capabilities.multisample_textures) = (false, false),
+        yoro_gl::Capabilities::limit_to_es_300,
+    ];
+    for (limit, settings) in limits.into_iter().map(|limit| (limit, smooth())).chain([(limits[0], local())]) {
+        let head = Headless::open_limited(Backend::Egl, limit).unwrap();
+        let gl = head.gl();
+        let mut rig = Rig::new(gl, &settings);
+        let mut images = StereoImages::new(gl).unwrap();
+        for dominant in Eye::BOTH {
+            let pair = pair(dominant, DepthConvention::Reversed);
+            let mut method = session(gl, Method::Synthesized, &settings);
+            let copied = rig.render(&mut method, &pair);
+            gl.set_profiling(Profiling::Finish);
+            rig.frame(&mut method, &pair.into(), FrameTargets::Images(&mut images));
+            let passes = gl.take_pass_times();
+            gl.set_profiling(Profiling::Off);
+            assert!(passes.iter().all(|pass| pass.name != "copy"), "{:?}", passes);
+            let shown = images.wide();
+            assert!(shown.eye(dominant).size()[0] > SIZE[0] && shown.eye(dominant.other()).size() == SIZE);
+            for eye in Eye::BOTH {
+                let is_same = shown.rgba(eye) == copied[eye.index()];
+                assert!(is_same, "{} samples, {dominant:?} dominant, {eye:?}", settings.msaa);
+            }
+        }
+        assert_eq!(gl.take_errors(), None);
     }
 }
 

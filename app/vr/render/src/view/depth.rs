@@ -140,22 +140,32 @@ impl DepthCopy {
         from: &DepthImage,
         to: &Destination,
         convention: DepthConvention,
+        map: [[f32; 2]; 2],
+    ) {
+        let pass = self.gl.pass("depth copy").read("depth_map", from.texture);
+        pass.write([to.image(Format::Depth32F)]).run(|| self.draw(from, to, convention, map));
+    }
+
+    /// Draws [`DepthCopy::run_scaled`] within a pass of somebody else, and no colour.
+    pub(crate) fn draw(
+        &self,
+        from: &DepthImage,
+        to: &Destination,
+        convention: DepthConvention,
         [scale, first]: [[f32; 2]; 2],
     ) {
         let Some(program) = &self.program.made[from.variant()] else { return };
-        let pass = self.gl.pass("depth copy").read("depth_map", from.texture);
-        pass.write([to.image(Format::Depth32F)]).run(|| {
-            self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
-            self.gl.overwrite(to, 0, true);
-            let shift = |i: usize| from.origin[i] as f32 + first[i] - scale[i] * to.origin[i] as f32;
-            program
-                .bind()
-                .texture_of("depth_map", 0, from.texture)
-                .set("place", Vec4::new(scale[0], scale[1], shift(0), shift(1)))
-                .set("reverse", from.convention != convention)
-                .set("view_layer", from.layer.unwrap_or(0) as i32);
-            self.gl.draw_screen();
-            self.gl.set_raster_state(&RasterState::SCREEN);
-        });
+        self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+        self.gl.mask_colors([false; 4]);
+        self.gl.overwrite(to, 0, true);
+        let shift = |i: usize| from.origin[i] as f32 + first[i] - scale[i] * to.origin[i] as f32;
+        program
+            .bind()
+            .texture_of("depth_map", 0, from.texture)
+            .set("place", Vec4::new(scale[0], scale[1], shift(0), shift(1)))
+            .set("reverse", from.convention != convention)
+            .set("view_layer", from.layer.unwrap_or(0) as i32);
+        self.gl.draw_screen();
+        self.gl.set_raster_state(&RasterState::SCREEN);
     }
 }

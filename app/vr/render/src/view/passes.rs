@@ -17,10 +17,9 @@ use super::settings::SAMPLE_DEPTH;
 use super::shadow::ShadowMap;
 use super::targets::{Onto, Targets};
 use super::uniforms::{nearer, set_view, view_rays};
+use crate::stereo::EyeTarget;
 use yoro::eyes::{DisparityMap, Eye, View};
-use yoro_gl::{
-    DepthTest, Destination, Format, GlError, Image, Pass, Program, RasterState, RenderTarget, Texture,
-};
+use yoro_gl::{DepthTest, Destination, Format, GlError, Image, Pass, Program, RasterState, Texture};
 
 /// The light in the views of a frame.
 pub struct Illumination<'a> {
@@ -189,8 +188,58 @@ impl Renderer {
     pub(super) fn draw_transparent(&self, targets: &Targets, scene: &LitScene, views: &[View]) {
         if scene.has_transparent() {
             let light = self.illuminate(targets.layout, scene, views);
-            self.transparent.run(Renderer::variant(targets), scene, views, &light);
+            self.transparent.run(Renderer::variant(targets), scene, views, &light, None);
         }
+    }
+
+    /// Draws the transparent surfaces over the picture of a view, where it is seen in the rectangle `shown` of `to`, into
+    /// which the view was drawn. Only the rectangle around them is loaded, with its depth, and stored.
+    pub(crate) fn draw_over_source(
+        &self,
+        targets: &mut Targets,
+        scene: &LitScene,
+        view: &View,
+        shown: Rectangle,
+        to: &EyeTarget,
+    ) -> Result<(), GlError> {
+        let part = scene.transparent_part(view).and_then(|part| part.within(&shown));
+        let Some(part @ Rectangle { origin, size }) = part else { return Ok(()) };
+        let framebuffer = targets.fit_over(view.size)?.framebuffer;
+        let place = Destination { framebuffer, origin, size };
+        let color = Image { size, ..targets.picture().1 };
+        let depth = targets.depth(view.size, Eye::Left, origin);
+        let known = Image { size, ..depth.texture.image() };
+        match targets.onto {
+            Onto::Resolved => self.gl.pass("load").read("copied", known).load([color]).run(|| {}),
+            Onto::Tile => {
+                let pass = self.gl.pass("load").read("depth_map", known).load([color]);
+                let copy = self.depth_load.as_ref();
+                pass.run(|| {
+                    copy.map(|copy| copy.draw(&depth, &place, view.depth.convention, [[1.0; 2], [0.0; 2]]))
+                });
+            }
+            Onto::Samples => self.load(targets, view, origin, targets, &place),
+        }
+        self.gl.bind_framebuffer(framebuffer, [0, 0], view.size);
+        let variant = Variant {
+            carried: targets.carries && targets.onto == Onto::Samples,
+            ..Variant::plain(targets.samples)
+        };
+        let views = std::slice::from_ref(view);
+        let light = self.illuminate(Layout::Single, scene, views);
+        self.transparent.run(variant, scene, views, &light, Some(&part));
+        match (targets.onto, targets.multisample()) {
+            (Onto::Tile, _) => targets.discard_depth(),
+            (Onto::Samples, Some(samples)) => {
+                let pass = self.gl.pass("resolve").in_tile(samples.images());
+                pass.write([color]).run(|| {
+                    samples.average(0, &Destination { framebuffer: to.color.framebuffer, ..place });
+                    samples.discard(true, true);
+                });
+            }
+            _ => {}
+        }
+        Ok(())
     }
 
     /// Draws the transparent surfaces over the bound framebuffer, which holds an eye and its depth from pixel [0, 0] on, and
@@ -198,7 +247,7 @@ impl Renderer {
     pub(crate) fn draw_over(&self, scene: &LitScene, view: &View, samples: u32) {
         let views = std::slice::from_ref(view);
         let light = self.illuminate(Layout::Single, scene, views);
-        self.transparent.run(Variant::plain(samples), scene, views, &light);
+        self.transparent.run(Variant::plain(samples), scene, views, &light, None);
     }
 
     /// Averages the samples, into `to` if it is given, and takes their nearest depth if `depth` is set. With `ink`,
@@ -212,7 +261,7 @@ impl Renderer {
         to: Option<&Destination>,
     ) -> Result<(), GlError> {
         match targets.onto {
-            Onto::Resolved if !depth && !ink => targets.resolved.discard_depth(),
+            Onto::Resolved if !depth && !ink => targets.discard_depth(),
             Onto::Resolved => {}
             Onto::Tile => {
                 if targets.carries
@@ -220,9 +269,7 @@ impl Renderer {
                 {
                     self.gl.pass("carry").run(|| carry.run());
                 }
-                if let Some(tile) = &targets.tile {
-                    tile.discard_depth();
-                }
+                targets.discard_depth();
             }
             Onto::Samples => self.resolve_samples(targets, view, depth, ink, to),
         }
@@ -260,8 +307,8 @@ impl Renderer {
     ) {
         let Some(samples) = targets.multisample() else { return };
         if self.reads(targets) && (depth || ink) {
-            self.read_samples(targets, view, ink, &targets.resolved);
-            return;
+            let place = targets.resolved_place();
+            return self.read_samples(targets, view, ink, targets.resolved.images(), &place);
         }
         if targets.carries
             && let Some(carry) = &self.carry
@@ -288,7 +335,14 @@ impl Renderer {
     }
 
     /// Averages the samples in memory and takes their nearest depth, with outlines or without.
-    fn read_samples(&self, targets: &Targets, view: &View, ink: bool, to: &RenderTarget) {
+    fn read_samples(
+        &self,
+        targets: &Targets,
+        view: &View,
+        ink: bool,
+        written: impl Iterator<Item = Image>,
+        to: &Destination,
+    ) {
         let Some(samples) = targets.multisample() else { return };
         let Some((color, depth)) = samples.color().zip(samples.depth()) else { return };
         let variant = Resolve { samples: samples.samples(), ink, depth: true, ..Resolve::default() };
@@ -298,8 +352,8 @@ impl Renderer {
         for (name, image) in ["color_map", "depth_map"].into_iter().zip(&mut images) {
             pass = pass.read(name, image);
         }
-        pass.write(to.images()).run(|| {
-            self.gl.overwrite(&Destination::whole(to), 1, true);
+        pass.write(written).run(|| {
+            self.gl.overwrite(to, 1, true);
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
             program.bind().texture_multisample("color_map", 0, color).texture_multisample(
                 "depth_map",
@@ -340,7 +394,9 @@ impl Renderer {
         }
         targets.ink_picture()?;
         match &targets.inked {
-            Some(inked) if self.reads(targets) => self.read_samples(targets, view, true, inked),
+            Some(inked) if self.reads(targets) => {
+                self.read_samples(targets, view, true, inked.images(), &Destination::whole(inked));
+            }
             _ => self.draw_ink(targets, view, Eye::Left),
         }
         Ok(())
@@ -404,11 +460,13 @@ impl Renderer {
         self.composite_as(targets, view, eye, crop, to, depth, kind);
     }
 
-    /// Writes a part of an image and its depth, without bloom, into other targets.
+    /// Writes a part of an image and its depth, without bloom, into other targets, or into the samples of its own, over which
+    /// more is drawn.
     fn load(&self, from: &Targets, view: &View, crop: [u32; 2], targets: &Targets, to: &Destination) {
         let carries = if targets.carries { targets.samples } else { 0 };
         let kind = Composite { carries, ..Composite::default() };
-        self.composite_as(from, view, Eye::Left, crop, to, Some(Rectangle::whole(to.size)), kind);
+        let whole = Some(Rectangle::whole(to.size));
+        self.gl.within_tile(|| self.composite_as(from, view, Eye::Left, crop, to, whole, kind));
     }
 
     #[allow(clippy::too_many_arguments, reason = "a pass names what it reads and writes")]
@@ -429,7 +487,7 @@ impl Renderer {
         let bloom = targets.bloom.as_ref().filter(|_| kind.bloom);
         if depth.is_none() && bloom.is_none() && layer.is_none() {
             let from = [0, 1].map(|i| corner[i] + crop[i]);
-            let copied = Image { size: to.size, ..targets.color().color(0).image() };
+            let copied = Image { size: to.size, ..targets.picture().1 };
             let pass = self.gl.pass("copy").read("copied", copied).write([to.image(Format::Rgba8)]);
             return pass.run(|| targets.color().copy_color(from, to));
         }
@@ -443,9 +501,12 @@ impl Renderer {
             let state = if image.is_some() { RasterState::SCREEN_DEPTH } else { RasterState::SCREEN };
             self.gl.set_raster_state(&state);
             self.gl.set_viewport([0, 1].map(|i| to.origin[i] + part.origin[i]), part.size);
+            let program = program.bind();
+            match layer {
+                None => program.texture("color_map", 0, targets.picture().0),
+                Some(_) => program.texture_of("color_map", 0, targets.color().color(0)),
+            };
             program
-                .bind()
-                .texture_of("color_map", 0, targets.color().color(0))
                 .set("color_layer", layer.unwrap_or(0) as i32)
                 .set("offset", IVec2::from(offset))
                 .set("view_origin", IVec2::from(corner.map(|n| n as i32)))
@@ -460,7 +521,7 @@ impl Renderer {
             }
             self.gl.draw_screen();
         };
-        let color = Image { size: to.size, ..targets.color().color(0).image() };
+        let color = Image { size: to.size, ..targets.picture().1 };
         let mut pass = self.gl.pass("composite").read("color_map", color).write([to.image(Format::Rgba8)]);
         if let Some(bloom) = bloom {
             pass = pass.read("bloom", bloom.result());

@@ -10,7 +10,7 @@ use std::rc::Rc;
 use super::bloom::{self, BloomPass};
 use super::carry::CarryPass;
 use super::cluster::Culler;
-use super::depth::{DepthImage, DepthResolve};
+use super::depth::{DepthCopy, DepthImage, DepthResolve};
 use super::geometry::{GeometryPass, Surfaces, Variant};
 use super::layout::Layout;
 use super::lights::Lights;
@@ -23,7 +23,7 @@ use super::transparent::TransparentPass;
 use crate::stereo::EyeTarget;
 use yoro::eyes::{Eye, View};
 use yoro_assets::ShadingStyle;
-use yoro_gl::{Context, Destination, GlError, Program, RenderTarget, ShaderSource};
+use yoro_gl::{Context, Destination, GlError, Program, RenderTarget, ShaderSource, TileTarget};
 
 /// The renderer of one scene: programs for the scene's style and materials, and its shadow map.
 /// After [`Renderer::new`] it is ready for single views. A stereo method compiles what else it needs once, in its first
@@ -43,6 +43,10 @@ pub struct Renderer {
     pub(super) transparent: TransparentPass,
     pub(super) skies: Vec<(Variant, Program)>,
     pub(super) carry: Option<CarryPass>,
+    /// Loads depth into tiles.
+    pub(super) depth_load: Option<DepthCopy>,
+    /// True if what is drawn over a picture begins with it.
+    pub(crate) loads_pictures: bool,
     pub(super) resolve: Vec<(Resolve, Program)>,
     pub(super) bloom: Option<BloomPass>,
     pub(super) composite: Vec<(Composite, Program)>,
@@ -122,7 +126,8 @@ impl Renderer {
     /// # Errors
     /// [`GlError`] when the driver refuses a program or a target, or lacks the settings' number of samples.
     pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Renderer, GlError> {
-        settings.supported(gl.capabilities())?;
+        let capabilities = gl.capabilities();
+        settings.supported(capabilities)?;
         let ink = scene.style == ShadingStyle::Anime;
         let mut depth_resolve = DepthResolve::best(gl, settings.msaa, ink);
         let mut carry = None;
@@ -145,6 +150,8 @@ impl Renderer {
             transparent: TransparentPass::new(gl, scene),
             skies: Vec::new(),
             carry,
+            depth_load: None,
+            loads_pictures: !capabilities.tile_samples || TileTarget::loads(gl, settings.msaa)?,
             resolve: Vec::new(),
             bloom: (settings.bloom && scene.is_lit()).then(|| BloomPass::new(gl)).transpose()?,
             composite: Vec::new(),
@@ -180,7 +187,7 @@ impl Renderer {
         view: &View,
     ) -> Result<RenderedView<'a>, GlError> {
         let targets = self.fitting(targets, scene)?;
-        self.draw_source(targets, &scene.into(), view)?;
+        self.draw_source(targets, &scene.into(), view, None)?;
         self.complete(targets, view)
     }
 
@@ -215,7 +222,7 @@ impl Renderer {
     /// Composites the whole view in the targets.
     fn complete<'a>(&self, targets: &'a mut Targets, view: &View) -> Result<RenderedView<'a>, GlError> {
         if self.has_composite() {
-            let to = Destination::whole(targets.picture(view.size)?);
+            let to = Destination::whole(targets.complete_picture(view.size)?);
             self.composite(targets, view, Eye::Left, [0, 0], &to, None);
         }
         let color = targets.composited.as_ref().filter(|_| self.has_composite()).unwrap_or(targets.color());
@@ -244,6 +251,11 @@ impl Renderer {
     /// True if bloom is added to the average of the samples.
     pub(crate) fn has_composite(&self) -> bool {
         self.bloom.is_some()
+    }
+
+    /// True if the average of the samples is the picture: neither outlines nor bloom follow.
+    pub(crate) fn is_complete(&self) -> bool {
+        !self.has_composite() && !self.ink
     }
 
     /// Returns the factor on the bloom in the targets.
@@ -281,6 +293,12 @@ impl Renderer {
     /// those that composite it with its depth.
     pub(crate) fn prepare_over(&mut self, scene: &GpuScene) -> Result<(), GlError> {
         self.transparent.prepare(scene, Variant::plain(1), &self.shading)?;
+        if self.is_complete() && scene.has_transparent() {
+            if self.depth_load.is_none() {
+                self.depth_load = Some(DepthCopy::new(&self.gl)?);
+            }
+            self.prepare_load()?;
+        }
         let depth = Some(self.depth_resolve == DepthResolve::InColor);
         let plain = Composite { bloom: self.bloom.is_some(), ..Composite::default() };
         self.prepare_composite(plain)?;
@@ -388,19 +406,21 @@ impl Renderer {
 /// What methods use to draw.
 impl Renderer {
     /// Renders the opaque part of a view for synthesis: its average colour without bloom, its nearest depth, and its
-    /// bloom.
+    /// bloom. Returns true if the picture is in `to`, which may be given if nothing [follows](Renderer::is_complete) the
+    /// surfaces.
     pub(crate) fn draw_source(
         &self,
         targets: &mut Targets,
         scene: &LitScene,
         view: &View,
-    ) -> Result<(), GlError> {
-        targets.fit(view, scene.detail(view), self.needs(true), None)?;
+        to: Option<&EyeTarget>,
+    ) -> Result<bool, GlError> {
+        let direct = targets.fit(view, scene.detail(view), self.needs(true), to)?;
         let culler = Culler::of_view(view);
         self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler));
-        self.resolve(targets, view, true, self.ink, None)?;
+        self.resolve(targets, view, true, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
         self.render_bloom(targets, view, Eye::Left);
-        Ok(())
+        Ok(direct)
     }
 
     /// Renders everything in one view, or in both eyes at once, and the bloom of a single view. With `depth`, the targets
@@ -414,7 +434,7 @@ impl Renderer {
         to: Option<&EyeTarget>,
     ) -> Result<bool, GlError> {
         let view = &views[0];
-        let to = to.filter(|_| !self.has_composite() && !self.ink);
+        let to = to.filter(|_| self.is_complete());
         let direct = targets.fit(view, scene.detail(view), self.needs(depth), to)?;
         let culler = Culler::of_view(view);
         let surfaces = match views.len() {

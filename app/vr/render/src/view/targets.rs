@@ -9,7 +9,8 @@ use super::settings::{RenderSettings, SAMPLE_DEPTH};
 use crate::stereo::EyeTarget;
 use yoro::eyes::{DepthConvention, Eye, View};
 use yoro_gl::{
-    Context, Destination, Filter, Format, GlError, MultisampleTarget, Pass, RenderTarget, Texture, TileTarget,
+    Context, Destination, Filter, Format, GlError, Image, MultisampleTarget, Pass, RenderTarget, Texture,
+    TileTarget,
 };
 
 /// The format of pictures.
@@ -50,6 +51,12 @@ pub struct Targets {
     multisample: Option<(MultisampleTarget, bool)>,
     /// Samples in tiles; `None` if the driver cannot keep them there.
     pub tile: Option<TileTarget>,
+    /// Samples in tiles, for what is drawn over a picture elsewhere; made when first needed.
+    over: Option<TileTarget>,
+    /// One sample for a picture elsewhere, and its depth.
+    one: TileTarget,
+    /// The texture that has the picture of the current view in place of `resolved`.
+    elsewhere: Option<(glow::Texture, Image)>,
     /// The framebuffer of the current view.
     pub onto: Onto,
     /// True if the current view carries depth in a second colour.
@@ -94,6 +101,9 @@ impl Targets {
             depth_resolve: if samples == 1 { DepthResolve::None } else { depth_resolve },
             multisample: None,
             tile: tile.transpose()?,
+            over: None,
+            one: TileTarget::new(gl, 1)?,
+            elsewhere: None,
             onto: Onto::Resolved,
             carries: false,
             needs: Needs::default(),
@@ -109,7 +119,7 @@ impl Targets {
     }
 
     /// Fits the targets to views like this one, and chooses the framebuffer; does nothing else if they already fit.
-    /// Returns true if the average of the samples can be written to `to` without a copy.
+    /// Returns true if the picture, the average of the samples, is written to the lower left part of `to` without a copy.
     pub fn fit(
         &mut self,
         view: &View,
@@ -124,63 +134,96 @@ impl Targets {
         self.resolved.resize(whole)?;
         self.bloom.as_mut().map_or(Ok(()), |bloom| bloom.resize(size))?;
         self.has_depth = false;
-        (self.onto, self.carries) = (Onto::Resolved, false);
-        if self.samples == 1 {
-            return Ok(false);
-        }
-        let is_reversed = view.depth.convention == DepthConvention::Reversed;
-        let carries = needs.depth && self.depth_resolve == DepthResolve::InColor && is_reversed;
-        self.carries = carries;
-        if carries {
+        self.carries = self.samples > 1
+            && needs.depth
+            && self.depth_resolve == DepthResolve::InColor
+            && view.depth.convention == DepthConvention::Reversed;
+        if self.carries {
             if self.pair.is_none() {
                 let formats = [(Format::Rg16F, Filter::Nearest)];
                 self.pair = Some(RenderTarget::new(&self.gl, whole, &formats, None)?);
             }
             self.pair.as_mut().map_or(Ok(()), |pair| pair.resize(whole))?;
         }
-        if !needs.samples && (carries || !needs.depth) && self.fit_tile(to.filter(|_| !carries))? {
+        // OpenGL ES averages between equal rectangles only.
+        let to = to.filter(|to| self.layout == Layout::Single && to.color.origin == [0, 0]);
+        let texture = to.and_then(|to| to.texture);
+        let is_direct = self.choose(whole, texture)? || self.onto == Onto::Samples && !needs.samples;
+        self.elsewhere = texture.filter(|_| is_direct);
+        Ok(is_direct && to.is_some())
+    }
+
+    /// Chooses the framebuffer. Returns true if it is that of a texture that was given.
+    fn choose(&mut self, size: [u32; 2], texture: Option<(glow::Texture, Image)>) -> Result<bool, GlError> {
+        self.onto = Onto::Resolved;
+        if self.samples == 1 {
+            return Ok(self.fit_one(texture));
+        }
+        if !self.needs.samples && (self.carries || !self.needs.depth) && self.fit_tile(texture) {
             self.onto = Onto::Tile;
-            return Ok(to.is_some_and(|to| to.texture.is_some()) && !carries);
+            return Ok(texture.is_some());
         }
         self.onto = Onto::Samples;
         let readable = self.depth_resolve == DepthResolve::Samples;
         match &mut self.multisample {
-            Some((samples, carried)) if *carried == carries => samples.resize(whole)?,
+            Some((samples, carried)) if *carried == self.carries => samples.resize(size)?,
             slot => {
                 // The previous samples are deleted first.
                 *slot = None;
-                let colors = &[Format::Rgba8, Format::Rg16F][..1 + usize::from(carries)];
+                let colors = &[Format::Rgba8, Format::Rg16F][..1 + usize::from(self.carries)];
                 let samples =
-                    MultisampleTarget::new(&self.gl, whole, self.samples, colors, SAMPLE_DEPTH, readable)?;
-                *slot = Some((samples, carries));
+                    MultisampleTarget::new(&self.gl, size, self.samples, colors, SAMPLE_DEPTH, readable)?;
+                *slot = Some((samples, self.carries));
             }
         }
-        // OpenGL ES averages between equal rectangles only.
-        let is_direct = |to: &EyeTarget| self.layout == Layout::Single && to.color.origin == [0, 0];
-        Ok(!needs.samples && !needs.depth && to.is_some_and(is_direct))
+        // A pass that reads them writes the picture and its depth.
+        Ok(self.needs.samples && self.fit_one(texture))
     }
 
-    /// Attaches what is drawn to the tiles; false if the driver has no such tiles. Colour goes to `to` if it is a
-    /// texture.
-    fn fit_tile(&mut self, to: Option<&EyeTarget>) -> Result<bool, GlError> {
-        let Some(tile) = &mut self.tile else { return Ok(false) };
-        let own = (self.resolved.color(0).raw(), self.resolved.color(0).image());
-        let color = to.and_then(|to| to.texture).unwrap_or(own);
+    /// Attaches a texture beside the depth of one sample; false if there is none, or the driver refuses.
+    fn fit_one(&mut self, texture: Option<(glow::Texture, Image)>) -> bool {
+        // SAFETY: the caller's texture, by the contract of `EyeTarget`.
+        texture.is_some_and(|color| unsafe { self.one.fit(&[color], self.resolved.depth()) }.is_ok())
+    }
+
+    /// Attaches what is drawn to the tiles; false if the driver has no such tiles. Colour goes to a texture if there is one.
+    fn fit_tile(&mut self, texture: Option<(glow::Texture, Image)>) -> bool {
+        let Some(tile) = &mut self.tile else { return false };
+        let color = texture.unwrap_or((self.resolved.color(0).raw(), self.resolved.color(0).image()));
         let pair = self.pair.as_ref().filter(|_| self.carries);
         let pair = pair.map(|pair| (pair.color(0).raw(), pair.color(0).image()));
         let colors = [color, pair.unwrap_or(color)];
         let colors = &colors[..1 + usize::from(pair.is_some())];
         // SAFETY: textures of this context: our own, and the caller's by the contract of `EyeTarget`.
-        let fits = unsafe { tile.fit(colors, self.resolved.depth()) };
-        if fits.is_err() {
+        let fits = unsafe { tile.fit(colors, self.resolved.depth()) }.is_ok();
+        if !fits {
             // The driver refuses these formats: it need not be asked again.
             self.tile = None;
         }
-        Ok(fits.is_ok())
+        fits
+    }
+
+    /// Returns the framebuffer for what is drawn over the picture elsewhere: that of its samples, whose colour and depth
+    /// are lost, or one that has the picture's colour, and its depth if that has one sample.
+    ///
+    /// # Errors
+    /// [`GlError`] if the driver refuses the texture.
+    pub fn fit_over(&mut self, size: [u32; 2]) -> Result<Destination, GlError> {
+        if self.onto != Onto::Tile {
+            return Ok(self.destination(size));
+        }
+        let color = self.picture();
+        let over = match &mut self.over {
+            Some(over) => over,
+            slot => slot.insert(TileTarget::new(&self.gl, self.samples)?),
+        };
+        // SAFETY: a texture of this context, by the contract of `EyeTarget`.
+        unsafe { over.fit(&[color], self.resolved.depth())? };
+        Ok(over.part(size))
     }
 
     /// Makes room for the complete picture of a view, and returns it.
-    pub fn picture(&mut self, size: [u32; 2]) -> Result<&RenderTarget, GlError> {
+    pub fn complete_picture(&mut self, size: [u32; 2]) -> Result<&RenderTarget, GlError> {
         picture(&self.gl, &mut self.composited, size)
     }
 
@@ -214,6 +257,7 @@ impl Targets {
         match (self.onto, &self.multisample, &self.tile) {
             (Onto::Samples, Some((samples, _)), _) => samples.part(size),
             (Onto::Tile, _, Some(tile)) => tile.part(size),
+            (Onto::Resolved, ..) if self.elsewhere.is_some() => self.one.part(size),
             _ => Destination { framebuffer: Some(self.resolved.raw()), origin: [0, 0], size },
         }
     }
@@ -226,6 +270,23 @@ impl Targets {
         }
         let to = self.destination(size);
         self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+    }
+
+    /// Returns the place of the resolved picture and its depth, for a pass that reads the samples.
+    pub fn resolved_place(&self) -> Destination {
+        let whole = Destination::whole(&self.resolved);
+        if self.elsewhere.is_some() { self.one.part(whole.size) } else { whole }
+    }
+
+    /// Discards the depth of the bound framebuffer.
+    pub fn discard_depth(&self) {
+        self.one.discard_depth();
+    }
+
+    /// Returns the texture of the resolved picture ([`Targets::color`]), which may be somebody else's.
+    pub fn picture(&self) -> (glow::Texture, Image) {
+        let own = self.color().color(0);
+        self.elsewhere.unwrap_or((own.raw(), own.image()))
     }
 
     /// Returns the resolved picture: display-referred sRGB without bloom, filtered linearly. Alpha is luma; with several

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use super::cluster::{Batch, Culler};
 use super::geometry::{Eyes, Programs, Variant};
 use super::passes::Illumination;
+use super::rectangle::Rectangle;
 use super::scene::{Features, GpuScene};
 use super::uniforms::depth_test;
 use yoro::eyes::View;
@@ -59,8 +60,15 @@ impl TransparentPass {
     }
 
     /// Draws what is seen in any of the views and hidden by nothing, with the light for positions relative to the first
-    /// view's, over what the pass before has drawn.
-    pub fn run(&self, variant: Variant, scene: &GpuScene, views: &[View], light: &Illumination) {
+    /// view's, over what the pass before has drawn; in this part of the image alone, if one is given.
+    pub fn run(
+        &self,
+        variant: Variant,
+        scene: &GpuScene,
+        views: &[View],
+        light: &Illumination,
+        part: Option<&Rectangle>,
+    ) {
         let (Some((_, programs)), Some(view)) =
             (self.made.iter().find(|(v, _)| *v == variant), views.first())
         else {
@@ -105,6 +113,9 @@ impl TransparentPass {
                         ..RasterState::SCREEN
                     });
                     self.gl.mask_depth();
+                    if let Some(Rectangle { origin, size }) = part {
+                        self.gl.clip(*origin, *size);
+                    }
                     eyes.set(program.bind());
                     light.set(program);
                     scene.set_material(program, material);

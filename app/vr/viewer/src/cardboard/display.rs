@@ -406,18 +406,17 @@ impl Cardboard {
                     None => (timewarp.frame(), pair),
                 };
                 self.viewer.draw_panels(shown, frame)?;
-                lens.run(frame.images(), turn, window);
+                lens.run(&frame.levels(), None, turn, window);
             }
-            None => match images.eye(Eye::Left).zip(images.eye(Eye::Right)) {
-                Some((left, right)) if left.0.inset.is_some() => {
-                    let pair = attached.rendered.map(|(_, pair)| pair);
-                    // As on headsets, the menu takes the HUD's place.
-                    let is_menu_shown = self.viewer.menu_place().is_some();
-                    let panel = self.viewer.hud()?.filter(|_| !is_menu_shown);
-                    lens.run_levels(&[left, right], panel.as_ref().zip(pair.as_ref()), turn, window);
-                }
-                _ => lens.run(images.wide().images(), turn, window),
-            },
+            None => {
+                let eyes = images.eye(Eye::Left).zip(images.eye(Eye::Right));
+                let eyes = eyes.map_or_else(|| images.wide().levels(), |(left, right)| [left, right]);
+                let pair = attached.rendered.map(|(_, pair)| pair);
+                // Over eyes without an inset it is drawn already. As on headsets, the menu takes the HUD's place.
+                let is_drawn = eyes[0].0.inset.is_none() || self.viewer.menu_place().is_some();
+                let panel = if is_drawn { None } else { self.viewer.hud()? };
+                lens.run(&eyes, panel.as_ref().zip(pair.as_ref()), turn, window);
+            }
         }
         self.viewer.draw_corners(corner, window);
         attached.presented.set();

@@ -104,7 +104,7 @@ impl Phone {
             _ => return Ok(()),
         }
         let window = Destination { framebuffer: None, origin: [0, 0], size: [width, height] };
-        self.lens.run(self.frame.images(), Quat::IDENTITY, &window);
+        self.lens.run(&self.frame.levels(), None, Quat::IDENTITY, &window);
         Ok(())
     }
 }
