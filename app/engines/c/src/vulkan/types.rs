@@ -228,7 +228,6 @@ impl YoroVkInfo {
             max_target_size: [self.max_target_width, self.max_target_height],
             timed_frames: self.timed_frames,
             pipeline_cache: self.pipeline_cache,
-            ..Options::default()
         })
     }
 
