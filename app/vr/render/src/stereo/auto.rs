@@ -107,7 +107,7 @@ impl Auto {
 }
 
 /// Writes the reason for the choice in a word. In `6.1/8.9ms` the times are those of the chosen and the other way. In
-/// `14.0/*9.2/8.1ms` they are those of two renders, rendered holes and filled ones, with an asterisk at the chosen way.
+/// `14.0/*9.2/8.1` they are those of two renders, rendered holes and filled ones, with an asterisk at the chosen way.
 impl Display for Auto {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Choice { path, reason, costs_ms } = self.choice();
@@ -121,7 +121,7 @@ impl Display for Auto {
             ([Some(two_views), Some(rendered), Some(filled)], _) => {
                 let mark = |of| if path == of { "*" } else { "" };
                 let [a, b, c] = StereoPath::ALL.map(mark);
-                write!(f, "{a}{two_views:.1}/{b}{rendered:.1}/{c}{filled:.1}ms")
+                write!(f, "{a}{two_views:.1}/{b}{rendered:.1}/{c}{filled:.1}")
             }
             (_, Reason::BothHoldRate) => f.write_str("both-in-time"),
             _ => f.write_str("not-comparable"),
