@@ -139,10 +139,11 @@ pub struct Choice {
 ///
 /// A measurement begins a quarter of a second after the first frame and takes a second, or three turns of 7 frames for
 /// each way if that is longer. Each turn lasts an eighth of a second, and its first three frames do not count. Times are
-/// means of the middle half of the samples, so that spikes do not count either.
+/// means of the middle half of the samples, so that spikes do not count either. With [`Aim::BestThatHolds`], whose
+/// pictures differ visibly, each way has two turns of a second.
 ///
-/// 1. With [`Aim::BestThatHolds`], the best picture is chosen whose time between frames is at most 1.25 refreshes, and
-///    whose cost, if known, is at most 80 % of a refresh, or 90 % for the way in use.
+/// 1. With [`Aim::BestThatHolds`], the best picture is chosen that holds the rate by rule 2, with at most 5 % of its frames
+///    later than a refresh, and whose cost, if known, is at most 80 % of a refresh, or 90 % for the way in use.
 /// 2. Otherwise, if only one way holds the display's rate, it is chosen. A way holds the rate if the time between its
 ///    frames is at most 1.25 refreshes.
 /// 3. Otherwise the cheapest way is chosen of those that hold the rate, or of all if none does. If a choice was already
@@ -152,7 +153,7 @@ pub struct Choice {
 ///
 /// A new measurement begins when the scene changes; when the frames' cost or pace has changed by 30 % or the heat by
 /// 0.1, but not within 30 s of the last measurement; when a way chosen by rule 1 no longer holds the rate, but not within
-/// 5 s; and after 1 to 10 min, chosen so that rendering the dearer ways during measurements costs 0.2 % of the time.
+/// 5 s, or twice as long each time that this changes nothing; and after 1 to 10 min, chosen so that rendering the dearer ways during measurements costs 0.2 % of the time.
 ///
 /// GPU times depend on the clock that the device has chosen. If it lowers the clock for light loads, all ways appear to
 /// cost nearly the same.
@@ -173,6 +174,9 @@ pub struct Chooser {
     watch: Watch,
     /// The heat at the last measurement.
     heat: Option<f32>,
+    /// True if the chosen way missed the rate before the last measurement, and how often that changed nothing.
+    is_missed: bool,
+    vain: u32,
 }
 
 /// The current phase.
@@ -186,7 +190,8 @@ enum Phase {
         turn_ns: i64,
         turn_frames: u32,
     },
-    /// Waiting for at most `left` more frames for the costs of the last measured frames.
+    /// Waiting for at most `left` more frames for the costs of the last measured frames. Where a change is seen, they go on
+    /// in the way of the last turn.
     Collecting {
         left: u32,
         begin_ns: i64,
@@ -219,12 +224,16 @@ struct Watch {
 struct Window {
     cost: Option<f32>,
     interval: Option<f32>,
+    /// True if too many of its frames were late.
+    is_late: bool,
 }
 
 const REMEMBERED: usize = 64;
 const MS: i64 = 1_000_000;
 const SETTLING_NS: i64 = 250 * MS;
 const TURN_NS: i64 = 125 * MS;
+/// The same where pictures differ so much that a change is seen.
+const VISIBLE_TURN_NS: i64 = 1000 * MS;
 const MEASURING_NS: i64 = 1000 * MS;
 const WATCH_NS: i64 = 2000 * MS;
 /// Longer times between frames count as pauses.
@@ -232,12 +241,17 @@ const PAUSE_NS: i64 = 1000 * MS;
 /// The first frames of a turn do not count: caches are cold, and the display still shows frames of the previous turn.
 const UNCOUNTED_FRAMES: u32 = 3;
 const TURN_FRAMES: u32 = 7;
-/// The smallest number of turns of each way.
+/// The smallest number of turns of each way, and that of such long ones.
 const TURNS: u32 = 3;
+const VISIBLE_TURNS: u32 = 2;
 /// The number of frames to wait for late costs.
 const LATE_FRAMES: u32 = 16;
 /// A way holds the display's rate if the time between its frames is at most this many refreshes.
 const MAX_REFRESHES_PER_FRAME: f32 = 1.25;
+/// A better but dearer way holds it only if at most this share of its frames took more than one refresh. A display's queue
+/// hides a way that is a little too slow from the middle half of the times.
+const MAX_LATE_SHARE: f32 = 0.05;
+const LATE_REFRESHES: f32 = 1.5;
 /// The share of a refresh that the cost of a way may be for it to be chosen as one that holds the rate, and to stay so.
 const ROOM_TO_CHOOSE: f32 = 0.8;
 const ROOM_TO_STAY: f32 = 0.9;
@@ -249,6 +263,8 @@ const OVERHEAD: f32 = 0.002;
 /// that time if nothing changes.
 const SHORTEST_REST_NS: i64 = 30_000 * MS;
 const REST_BEFORE_MISSES_NS: i64 = 5_000 * MS;
+/// How often that rest doubles while such a measurement finds that the way holds the rate.
+const MAX_VAIN: u32 = 6;
 const REST_NS: [i64; 2] = [60_000 * MS, 600_000 * MS];
 /// Changes of cost, pace and heat that are worth another measurement.
 const DRIFT: f32 = 1.3;
@@ -271,13 +287,19 @@ impl Chooser {
             refresh_hz: 0.0,
             watch: Watch::default(),
             heat: None,
+            is_missed: false,
+            vain: 0,
         }
     }
 
     /// Returns the way to render the next frame.
     pub fn path(&self) -> StereoPath {
-        let Phase::Measuring { turn, .. } = self.phase else { return self.choice.path };
         let paths = self.aim.paths();
+        let turn = match self.phase {
+            Phase::Measuring { turn, .. } => turn,
+            Phase::Collecting { .. } if self.aim == Aim::BestThatHolds => paths.len() as u32 - 1,
+            _ => return self.choice.path,
+        };
         let chosen = paths.iter().position(|path| *path == self.choice.path).unwrap_or_default();
         paths[(chosen + turn as usize) % paths.len()]
     }
@@ -371,6 +393,10 @@ impl Chooser {
     fn proceed(&mut self, end: &FrameEnd) {
         let now_ns = end.now_ns;
         let paths = self.aim.paths().len() as u32;
+        let (length_ns, least) = match self.aim {
+            Aim::Cheapest => (TURN_NS, TURNS),
+            Aim::BestThatHolds => (VISIBLE_TURN_NS, VISIBLE_TURNS),
+        };
         match &mut self.phase {
             Phase::Settling(begin) => {
                 if now_ns - *begin.get_or_insert(now_ns) >= SETTLING_NS {
@@ -379,11 +405,11 @@ impl Chooser {
             }
             Phase::Measuring { begin_ns, turn, turn_ns, turn_frames } => {
                 *turn_frames += 1;
-                if *turn_frames < TURN_FRAMES || now_ns - *turn_ns < TURN_NS {
+                if *turn_frames < TURN_FRAMES || now_ns - *turn_ns < length_ns {
                     return;
                 }
                 let turns = *turn + 1;
-                if turns >= TURNS * paths && turns.is_multiple_of(paths) && now_ns - *begin_ns >= MEASURING_NS
+                if turns >= least * paths && turns.is_multiple_of(paths) && now_ns - *begin_ns >= MEASURING_NS
                 {
                     self.phase = Phase::Collecting { left: LATE_FRAMES, begin_ns: *begin_ns };
                     self.collect(now_ns);
@@ -398,12 +424,14 @@ impl Chooser {
                 let heat_has_drifted =
                     self.heat.zip(heat).is_some_and(|(before, now)| (now - before).abs() >= HEAT_DRIFT);
                 self.heat = self.heat.or(heat);
-                let window = self.watch.end_window(now_ns);
+                let window = self.watch.end_window(now_ns, end.refresh_hz);
                 let has_drifted = window.is_some_and(|window| self.watch.has_drifted(&window));
                 let misses = window.is_some_and(|window| self.misses_rate(&window, end.refresh_hz));
+                let misses = misses && rested_ns >= REST_BEFORE_MISSES_NS << self.vain;
+                self.is_missed = misses;
                 if is_due
                     || (rested_ns >= SHORTEST_REST_NS && (has_drifted || heat_has_drifted))
-                    || (rested_ns >= REST_BEFORE_MISSES_NS && misses)
+                    || misses
                 {
                     self.measure(end);
                 }
@@ -419,8 +447,7 @@ impl Chooser {
         let exceeds = |ms: Option<f32>, refreshes| ms.is_some_and(|ms| ms * refresh_hz > 1e3 * refreshes);
         let had_room = !exceeds(costs_ms[path.index()], ROOM_TO_STAY);
         is_preferred
-            && (exceeds(window.interval, MAX_REFRESHES_PER_FRAME)
-                || (had_room && exceeds(window.cost, ROOM_TO_STAY)))
+            && (window.is_late || (had_room && exceeds(window.cost, ROOM_TO_STAY)))
     }
 
     /// Begins a measurement.
@@ -442,7 +469,10 @@ impl Chooser {
             *left -= 1;
             return;
         }
-        self.choice = self.choose();
+        let choice = self.choose();
+        let is_vain = self.is_missed && choice.path == self.choice.path;
+        self.vain = if is_vain { (self.vain + 1).min(MAX_VAIN) } else { 0 };
+        self.choice = choice;
         let rest_ns = self.rest(now_ns - begin_ns);
         self.watch = Watch::default();
         self.phase = Phase::Resting { since_ns: now_ns, until_ns: now_ns + rest_ns };
@@ -456,8 +486,13 @@ impl Chooser {
         let is_within = |times: &PathTimes, path: StereoPath, refreshes: f32| {
             times[path.index()].is_some_and(|ms| ms * self.refresh_hz <= 1e3 * refreshes)
         };
-        let is_in_time =
-            |path: &StereoPath| is_rate_known && is_within(&intervals, *path, MAX_REFRESHES_PER_FRAME);
+        let is_punctual = |path: &StereoPath| {
+            let late = self.intervals[path.index()].share_above(1e3 * LATE_REFRESHES / self.refresh_hz);
+            self.aim == Aim::Cheapest || late.is_some_and(|share| share <= MAX_LATE_SHARE)
+        };
+        let is_in_time = |path: &StereoPath| {
+            is_rate_known && is_within(&intervals, *path, MAX_REFRESHES_PER_FRAME) && is_punctual(path)
+        };
         let has_room = |path: &StereoPath| {
             let is_in_use = *path == self.choice.path && self.choice.reason != Reason::Unmeasured;
             let room = if is_in_use { ROOM_TO_STAY } else { ROOM_TO_CHOOSE };
@@ -535,13 +570,14 @@ impl Watch {
     }
 
     /// Returns the window that ends now, if one does.
-    fn end_window(&mut self, now_ns: i64) -> Option<Window> {
+    fn end_window(&mut self, now_ns: i64, refresh_hz: f32) -> Option<Window> {
         if now_ns - *self.begin_ns.get_or_insert(now_ns) < WATCH_NS {
             return None;
         }
         let (cost, interval) = (self.costs.interquartile_mean(), self.intervals.interquartile_mean());
+        let late = self.intervals.share_above(1e3 * LATE_REFRESHES / refresh_hz);
         self.restart();
-        Some(Window { cost, interval })
+        Some(Window { cost, interval, is_late: late.is_some_and(|share| share > MAX_LATE_SHARE) })
     }
 
     /// True if the cost or the frame time of a window differs from that of the first one.

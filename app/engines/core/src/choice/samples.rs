@@ -1,7 +1,7 @@
 //! Frame times, and the mean of their middle half.
 
 /// The largest number of times that are kept.
-const MAX: usize = 128;
+const MAX: usize = 256;
 /// The smallest number of times that have a middle.
 const FEWEST: usize = 4;
 
@@ -32,6 +32,13 @@ impl Samples {
 
     pub fn len(&self) -> usize {
         self.len
+    }
+
+    /// Returns the share of times above a limit, or `None` for fewer than four times.
+    pub fn share_above(&self, ms: f32) -> Option<f32> {
+        let times = &self.times[..self.len];
+        let above = times.iter().filter(|time| **time > ms).count();
+        (times.len() >= FEWEST).then(|| above as f32 / times.len() as f32)
     }
 
     /// Returns the mean of the middle half, or `None` for fewer than four times. Unlike a median, it distinguishes

@@ -22,6 +22,8 @@ struct Device {
     spikes: f32,
     random: Pcg64Mcg,
     late: VecDeque<f32>,
+    /// When the last frame was finished, if the display's queue holds a frame in advance.
+    finished_ms: Option<f64>,
     changes: u32,
     frames: [u32; 3],
 }
@@ -53,6 +55,7 @@ impl Device {
             spikes: 0.0,
             random: Pcg64Mcg::seed_from_u64(7),
             late: VecDeque::new(),
+            finished_ms: None,
             changes: 0,
             frames: [0; 3],
         }
@@ -72,7 +75,12 @@ impl Device {
         let gpu_ms = self.gpu_ms[rendered.index()] * factor;
         let busy_ms = gpu_ms.max(self.cpu_ms[rendered.index()]);
         let refresh_ms = if self.refresh_hz > 0.0 { 1e3 / self.refresh_hz } else { 0.0 };
-        let frame_ms = if refresh_ms > 0.0 { (busy_ms / refresh_ms).ceil() * refresh_ms } else { busy_ms };
+        let mut frame_ms = if refresh_ms > 0.0 { (busy_ms / refresh_ms).ceil() * refresh_ms } else { busy_ms };
+        if let Some(finished) = &mut self.finished_ms {
+            let (shown, refresh) = (self.now_ns as f64 * 1e-6, f64::from(refresh_ms));
+            *finished = finished.max(shown - refresh) + f64::from(busy_ms);
+            frame_ms = (((*finished - shown) / refresh).ceil().max(1.0) * refresh) as f32;
+        }
         self.now_ns += (f64::from(frame_ms) * 1e6) as i64;
         self.late.push_back(gpu_ms);
         let cost = self.timer.and_then(|frames_ago| {
@@ -336,6 +344,10 @@ fn the_best_picture_that_holds_the_rate_is_chosen() {
         assert_eq!((choice.path, choice.reason), (path, reason), "{gpu_ms:?}, timer {timer:?}");
         assert_eq!(compared(&choice).len(), 3);
     }
+    // A queue hides most of the refreshes that two views miss.
+    let mut device = Device { finished_ms: Some(0.0), ..best([18.3, 9.0, 8.0], None) };
+    device.measured_after();
+    assert_eq!(device.chooser.choice().path, RenderedHoles);
     // The CPU cannot draw everything twice in time, and no way leaves the GPU room.
     let mut device = best([14.0, 15.9, 15.0], Some(4));
     device.cpu_ms = [19.0, 10.0, 10.0];
@@ -390,6 +402,7 @@ fn a_way_that_no_longer_holds_the_rate_is_left_within_seconds() {
     let mut device = best([8.0, 9.0, 10.0], Some(4));
     device.measured_after();
     device.run(590.0);
-    let [two_views, rendered, filled] = device.frames;
-    assert!(two_views > 500 * (rendered + filled) / 2, "{:?}", device.frames);
+    let [_, rendered, filled] = device.frames;
+    // The first quarter of a second, two turns of a second each, and what waits for the last costs.
+    assert!(rendered + filled <= 15 + 4 * 61 + LATE_FRAMES, "{:?}", device.frames);
 }

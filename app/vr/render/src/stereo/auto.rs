@@ -56,6 +56,11 @@ impl Auto {
         self.chooser.aim().paths()
     }
 
+    /// True if the chosen path was preferred to cheaper ones for its picture.
+    pub(super) fn has_cheaper(&self) -> bool {
+        self.chooser.aim() == Aim::BestThatHolds && self.choice().path != StereoPath::Synthesis
+    }
+
     /// Returns how the next frame is to be rendered.
     pub(super) fn path(&self) -> StereoPath {
         self.chooser.path()
