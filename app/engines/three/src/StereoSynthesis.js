@@ -334,7 +334,7 @@ export class StereoSynthesis {
           return this.#render(scene, shown);
         }
         const isOpen = this.holes === 'rendered' && way === WAYS[1] && parts.canOpen;
-        passes.choose(isOpen, left > 0 || target !== null, this.#isReversed);
+        passes.choose(isOpen, this.#isReversed);
         passes.assign(this.#rendered);
         passes.isCovering = parts.isCovering;
         aside(renderer, () => {

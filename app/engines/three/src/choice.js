@@ -12,13 +12,15 @@ const UNCOUNTED_FRAMES = 3;
 const TURN_FRAMES = 7, TURNS = 6, LATE_FRAMES = 16;
 /** A way holds the display's rate up to this number of refreshes between frames. */
 const MAX_REFRESHES = 1.25;
+/** Among more than two ways, it does with at most this share of late frames, and this room in its cost, or less if in use. */
+const MAX_LATE = 0.05, ROOM = [0.8, 0.9];
 /** Without a timer and the display's rate, ways whose frames come at times that differ by less hold the same rate. */
 const SAME_RATE = 0.05;
 /** A choice changes if another way costs less than this share. */
 const SWITCH_BELOW = 0.9;
 /** The share of the time that measuring may cost. */
 const OVERHEAD = 0.002;
-const SHORTEST_REST = 3e4, LEAST_REST = 6e4, LONGEST_REST = 6e5;
+const MISSED_REST = 5e3, SHORTEST_REST = 3e4, LEAST_REST = 6e4, LONGEST_REST = 6e5;
 /** A change of cost or pace that is worth another measurement. */
 const DRIFT = 1.3;
 
@@ -59,6 +61,8 @@ export class Chooser {
   #intervals = {};
   #watchBegin = null;
   #first = null;
+  /** The time before which a way that misses the rate is not measured again. */
+  #missedRest = MISSED_REST;
   #way = 'synthesized';
   #choice = null;
 
@@ -78,6 +82,7 @@ export class Chooser {
     if (!ways.includes(this.#way)) this.#way = ways[1];
     this.#phase = SETTLES;
     this.#turn = 0;
+    this.#missedRest = MISSED_REST;
     this.#begin = this.#last = null;
     this.#choose(this.#way, 'unmeasured');
   }
@@ -149,7 +154,7 @@ export class Chooser {
       this.#collect(now);
     } else if (this.#phase === COLLECTS) {
       this.#collect(now);
-    } else if ((this.#hasDrifted(now) && now - this.#begin >= SHORTEST_REST) || now >= this.#until) {
+    } else if (this.#hasChanged(now) || now >= this.#until) {
       this.#measure(now);
     }
   }
@@ -194,16 +199,21 @@ export class Chooser {
     };
     const known = ofAll(this.#costs), intervals = ofAll(this.#intervals);
     if (!intervals) return this.#choose(this.#way, 'incomparable');
+    const costs = known ?? intervals, isNew = this.#choice.reason === 'unmeasured';
     const rank = (way) => Math.max(ways.indexOf(way), Number(!this.#isRanked));
-    const holding = ways.filter((way) => intervals[way] * refresh <= 1000 * MAX_REFRESHES);
-    const good = refresh > 0 ? holding.filter((way) => rank(way) === rank(holding[0])) : [];
-    if (good.length === 1) return this.#choose(good[0], 'holds the rate', intervals);
-    const open = good.length > 0 ? good : ways, costs = known ?? intervals;
-    const way = open.includes(this.#way) ? this.#way : open[0];
+    const holding = ways.filter((way) => refresh > 0 && intervals[way] * refresh <= 1000 * MAX_REFRESHES && this.#isPunctual(way));
+    const roomy = holding.filter((way) => ways.length < 3 || !known || known[way] * refresh <= 1000 * ROOM[Number(way === this.#way && !isNew)]);
+    const best = roomy.filter((way) => rank(way) === rank(roomy[0]));
+    if (best.length === 1) return this.#choose(best[0], 'holds the rate', costs);
+    const good = best.length > 0 ? best : holding;
+    // Without samples only to hold a rate.
+    const open = good.length > 0 ? good : ways.filter((way) => refresh > 0 || way !== 'aliased');
     const cheapest = open.reduce((a, b) => (costs[b] < costs[a] ? b : a));
-    const [least, most] = [Math.min, Math.max].map((pick) => pick(...open.map((each) => costs[each])));
-    if (!known && (good.length > 0 || most - least < SAME_RATE * most)) return this.#choose(way, 'both hold the rate');
-    const isCheaper = least < costs[way] * (this.#choice.reason === 'unmeasured' ? 1 : SWITCH_BELOW);
+    const least = costs[cheapest];
+    const alike = open.filter((each) => good.length > 0 || costs[each] - least < SAME_RATE * least);
+    const way = [this.#way, ...(known ? open : alike)].find((each) => open.includes(each));
+    if (!known && alike.length > 1) return this.#choose(alike.includes(way) ? way : alike[0], 'both hold the rate');
+    const isCheaper = least < costs[way] * (isNew ? 1 : SWITCH_BELOW);
     return this.#choose(isCheaper ? cheapest : way, isCheaper || costs[way] === least ? 'cheaper' : 'similar', costs);
   }
 
@@ -218,13 +228,25 @@ export class Chooser {
     for (const all of [this.#costs, this.#intervals]) all[WATCHED] = [];
   }
 
-  /** True if a window ends now whose times differ from those of the first window. */
-  #hasDrifted(now) {
+  /** True unless pictures differ and too many frames of a way are late, which a display's queue hides from most of them. */
+  #isPunctual(way) {
+    const times = this.#intervals[way];
+    return this.#ways.length < 3 || times.filter((time) => time * this.#refresh > 1500).length <= MAX_LATE * times.length;
+  }
+
+  /** True if a window ends now whose times differ from those of the first window, or that misses the rate. */
+  #hasChanged(now) {
     this.#watchBegin ??= now;
     if (now - this.#watchBegin < WATCH) return false;
+    const rested = now - this.#begin;
     const times = [this.#costs, this.#intervals].map((all) => middle(all[WATCHED]));
+    const isLate = this.#choice.reason === 'holds the rate' && this.#way !== this.#ways.at(-1) && !this.#isPunctual(WATCHED);
     this.#watch();
+    if (isLate && rested >= this.#missedRest) {
+      this.#missedRest *= 2;
+      return true;
+    }
     const first = this.#first ??= times;
-    return times.some((time, i) => time !== null && first[i] !== null && (time > first[i] * DRIFT || time * DRIFT < first[i]));
+    return rested >= SHORTEST_REST && times.some((time, i) => time !== null && first[i] !== null && (time > first[i] * DRIFT || time * DRIFT < first[i]));
   }
 }

@@ -122,10 +122,9 @@ export class Passes {
    * Chooses the other eye's picture.
    *
    * @param {boolean} isOpen - True if holes are left open, and depth is the nearest elsewhere.
-   * @param {boolean} hasDepth - True if depth is to be right once they are drawn.
    * @param {boolean} isReversed - True if depth is 1 at the near plane, and not 0.
    */
-  choose(isOpen, hasDepth, isReversed) {
+  choose(isOpen, isReversed) {
     if (isOpen && !this.open) {
       for (const name of ['open', 'depth']) this.eyes.add(this[name] = this.#picture(marchVertex, march, isInside, marked));
       this.open.material.uniforms.mark.value = Number(isReversed);
@@ -134,8 +133,7 @@ export class Passes {
     }
     this.other.visible = !isOpen;
     if (!this.open) return;
-    this.open.visible = isOpen;
-    this.depth.visible = isOpen && hasDepth;
+    this.open.visible = this.depth.visible = isOpen;
   }
 
   /** Gives each eye its picture, by three's layers of one eye. */

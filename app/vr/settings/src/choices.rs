@@ -230,7 +230,7 @@ by_name! { MethodChoice }
 
 named! {
     MethodChoice: &{
-        let mut all = [Choice::new("auto", "The cheaper one of conventional and yoro, which are measured in turns"); MethodChoice::ALL.len()];
+        let mut all = [Choice::new("auto", "The cheaper one of conventional and yoro, measured in turns; with rendered holes, the best in time"); MethodChoice::ALL.len()];
         let mut i = 0;
         while i < Method::ALL.len() {
             all[i + 1] = Method::CHOICES[i];

@@ -82,7 +82,8 @@ settings! {
     "seed" seed: u64 = 1,
     /// The scene's viewpoint to stand at, from 0; numbers beyond the last one start over.
     "viewpoint" viewpoint: usize = 0,
-    /// The stereo method to start with; `auto` measures `conventional` and `yoro` on the device and uses the cheaper one.
+    /// The stereo method to start with; `auto` measures `conventional` and `yoro` on the device and uses the cheaper one, or
+    /// with rendered holes the best of three that holds the rate.
     "method" method: MethodChoice = MethodChoice::Auto,
     /// The methods that a tap goes through.
     "methods" methods: Vec<MethodChoice> =

@@ -61,8 +61,8 @@ pub struct YoroVkInfo {
     pub warp_kind: YoroWarpKind,
     /// 1: makes a composer, too, for yoro_vk_compose. 0: it is not used.
     pub composes: u32,
-    /// YORO_OUTPUT_OPEN_STENCIL, for a depth_format with stencil, or YORO_OUTPUT_OPEN_DEPTH, for any: the mark then replaces
-    /// the synthesized depth. 0: holes are filled.
+    /// With YORO_WARP_KIND_EYES and a depth_format: YORO_OUTPUT_OPEN_STENCIL, if that has stencil, or YORO_OUTPUT_OPEN_DEPTH:
+    /// the mark then replaces the synthesized depth. 0: holes are filled.
     pub holes: YoroOutputFlags,
     /// Must be 0.
     pub reserved: u32,

@@ -429,10 +429,7 @@ impl Chooser {
                 let misses = window.is_some_and(|window| self.misses_rate(&window, end.refresh_hz));
                 let misses = misses && rested_ns >= REST_BEFORE_MISSES_NS << self.vain;
                 self.is_missed = misses;
-                if is_due
-                    || (rested_ns >= SHORTEST_REST_NS && (has_drifted || heat_has_drifted))
-                    || misses
-                {
+                if is_due || (rested_ns >= SHORTEST_REST_NS && (has_drifted || heat_has_drifted)) || misses {
                     self.measure(end);
                 }
             }
@@ -446,8 +443,7 @@ impl Chooser {
             (self.aim, reason) == (Aim::BestThatHolds, Reason::HoldsRate) && path != StereoPath::Synthesis;
         let exceeds = |ms: Option<f32>, refreshes| ms.is_some_and(|ms| ms * refresh_hz > 1e3 * refreshes);
         let had_room = !exceeds(costs_ms[path.index()], ROOM_TO_STAY);
-        is_preferred
-            && (window.is_late || (had_room && exceeds(window.cost, ROOM_TO_STAY)))
+        is_preferred && (window.is_late || (had_room && exceeds(window.cost, ROOM_TO_STAY)))
     }
 
     /// Begins a measurement.

@@ -75,7 +75,8 @@ impl Device {
         let gpu_ms = self.gpu_ms[rendered.index()] * factor;
         let busy_ms = gpu_ms.max(self.cpu_ms[rendered.index()]);
         let refresh_ms = if self.refresh_hz > 0.0 { 1e3 / self.refresh_hz } else { 0.0 };
-        let mut frame_ms = if refresh_ms > 0.0 { (busy_ms / refresh_ms).ceil() * refresh_ms } else { busy_ms };
+        let mut frame_ms =
+            if refresh_ms > 0.0 { (busy_ms / refresh_ms).ceil() * refresh_ms } else { busy_ms };
         if let Some(finished) = &mut self.finished_ms {
             let (shown, refresh) = (self.now_ns as f64 * 1e-6, f64::from(refresh_ms));
             *finished = finished.max(shown - refresh) + f64::from(busy_ms);

@@ -91,7 +91,8 @@ struct Plan {
 
 /// A method, named or chosen by its cost, and two renders in its place for eyes that it cannot use.
 ///
-/// While sizes stay, frames allocate and compile nothing, once the session is prepared.
+/// While sizes stay, frames allocate and compile nothing, once the session is prepared or has rendered one on each path:
+/// two renders in place of a named method are made when they are first needed.
 pub struct StereoSession {
     gl: Rc<Context>,
     options: StereoOptions,
