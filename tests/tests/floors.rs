@@ -25,19 +25,19 @@ const MANIFESTS: [&str; 2] = ["Cargo.toml", "app/engines/bevy/Cargo.toml"];
 /// Thousands of lines of Rust that each floor may have. Room for a new thing is made by an old one; a change that needs more
 /// changes this table, and its commit says why.
 const LINES: [(&str, f64); 10] = [
-    ("app/engines", 39.4),
-    ("app/base", 12.1),
-    ("app/vr", 29.3),
-    ("app/lab", 20.9),
-    ("app/program", 6.7),
+    ("app/engines", 40.8),
+    ("app/base", 11.6),
+    ("app/vr", 29.7),
+    ("app/lab", 19.3),
+    ("app/program", 6.5),
     ("android", 4.7),
     ("scenes", 12.3),
     ("shaders-glsl", 0.3),
-    ("tests", 24.2),
-    ("xtask", 11.3),
+    ("tests", 23.9),
+    ("xtask", 10.7),
 ];
 /// Thousands of words that all documents may have.
-const WORDS: f64 = 33.5;
+const WORDS: f64 = 34.0;
 
 /// A package, and what it compiles of this repository's packages, as folders.
 struct Package {
