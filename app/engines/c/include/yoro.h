@@ -1877,8 +1877,8 @@ typedef struct {
    */
   uint32_t composes;
   /**
-   * YORO_OUTPUT_OPEN_STENCIL, for a depth_format with stencil, or YORO_OUTPUT_OPEN_DEPTH, for any: the mark then replaces
-   * the synthesized depth. 0: holes are filled.
+   * With YORO_WARP_KIND_EYES and a depth_format: YORO_OUTPUT_OPEN_STENCIL, if that has stencil, or YORO_OUTPUT_OPEN_DEPTH:
+   * the mark then replaces the synthesized depth. 0: holes are filled.
    */
   YoroOutputFlags holes;
   /**
