@@ -191,7 +191,7 @@ fn ratios(entries: &[Entry]) -> Table {
     let title = "Executed slots over two renders: mean of the scenes, least and most";
     let last = ["bytes a pixel", "bytes, ratio", "bytes, 16-bit depth", "bytes, blits in memory"];
     let mut table = table(title, &["<frames", "<method"], &last);
-    for (i, entry) in entries.iter().enumerate() {
+    for entry in entries {
         let mut cells = row(entry, |gpu| match entry.method {
             TWO_RENDERS => format!("{:.0} slots", average(entry.all_slots(gpu))),
             _ => spread(&entry.over_two(|entry| entry.all_slots(gpu))),
@@ -200,8 +200,9 @@ fn ratios(entries: &[Entry]) -> Table {
         for prefix in [BYTES, BYTES_16, BYTES_BLIT] {
             cells.push(ours(spread(&entry.over_two(|entry| entry.bytes(prefix)))));
         }
-        table.push_grouped(cells, i > 0 && entries[i - 1].label != entry.label);
+        table.push(cells);
     }
+    table.group();
     table
 }
 
@@ -301,7 +302,7 @@ fn passes(entries: &[Entry]) -> Table {
             cells.push(shown("fragments/", 2));
             cells.extend(GPUS.iter().map(|gpu| shown(&format!("slots/{}/", gpu.gpu), 1)));
             cells.push(shown(BYTES, 1));
-            table.push_grouped(cells, i == 0);
+            if i == 0 { table.push_first(cells) } else { table.push(cells) }
         }
     }
     let [width, height] = SIZE;
