@@ -65,7 +65,7 @@ pub struct StereoCamera {
     /// Fewer pixels where the eyes do not look. `None` for all pixels everywhere.
     pub foveation: Option<Foveation>,
     /// Where the eyes look, as a direction in the camera's axes: it may change in every frame, and nothing is created anew.
-    /// `None` for straight ahead.
+    /// `None` for straight ahead, always: keep the last direction while a tracker has lost the eyes.
     pub gaze: Option<Dir3>,
     /// Distance between the eyes.
     pub ipd: f32,

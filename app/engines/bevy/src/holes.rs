@@ -76,7 +76,10 @@ impl FromWorld for HolePasses {
         };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("yoro holes"),
-            entries: &[entry(0, wgpu::TextureSampleType::Depth), entry(1, wgpu::TextureSampleType::Uint)],
+            entries: &[
+                entry(0, wgpu::TextureSampleType::Float { filterable: false }),
+                entry(1, wgpu::TextureSampleType::Uint),
+            ],
         });
         let restore = pipeline(device, &layout, &module, "restore", &[]);
         HolePasses { layout, module, restore, open: Vec::new() }

@@ -1,6 +1,7 @@
-// The passes around the second draw of an eye's opaque objects, which draws open pixels only.
+// The passes around the second draw of an eye's opaque objects, which draws open pixels only. Depth is read as a number, since
+// GLSL has no loads of depth textures.
 
-@group(0) @binding(0) var synthesized_depth: texture_depth_2d;
+@group(0) @binding(0) var synthesized_depth: texture_2d<f32>;
 @group(0) @binding(1) var marks: texture_2d<u32>;
 
 @vertex
@@ -27,5 +28,5 @@ fn restore(@builtin(position) position: vec4<f32>) -> @builtin(frag_depth) f32 {
     if is_open(position) {
         discard;
     }
-    return textureLoad(synthesized_depth, vec2<i32>(position.xy), 0);
+    return textureLoad(synthesized_depth, vec2<i32>(position.xy), 0).x;
 }

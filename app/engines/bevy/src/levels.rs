@@ -25,7 +25,7 @@ pub struct Foveation {
     /// Pixels of the wide level for each pixel of the eye, along each axis: more than 0, at most 1.
     pub density: f32,
     /// The distance from which on the other eye's inset is complete, in the camera's unit. Where a nearer surface leaves a
-    /// hole at the inset's border, the wide level shows.
+    /// hole at the inset's border, the wide level shows in [`StereoMode::Opaque`](crate::StereoMode::Opaque).
     pub nearest: f32,
 }
 

@@ -101,10 +101,10 @@ fn extract(
     cameras: Extract<Query<(RenderEntity, &Camera, &Eyes, &EyeCameras)>>,
     entities: Extract<Query<RenderEntity>>,
     device: Res<RenderDevice>,
-    old: Query<Entity, Or<(With<Stereo>, With<ShownEyes>, With<RendersHoles>)>>,
+    old: Query<Entity, Or<(With<Stereo>, With<ShownEyes>, With<RendersHoles>, With<Synthesized>)>>,
 ) {
     for entity in &old {
-        commands.entity(entity).remove::<(Stereo, ShownEyes, RendersHoles)>();
+        commands.entity(entity).remove::<(Stereo, ShownEyes, RendersHoles, Synthesized)>();
     }
     for (wide, camera, eyes, belonging) in &cameras {
         let (Some(arrangement), Some(views)) = (eyes.arrangement, eyes.views) else { continue };

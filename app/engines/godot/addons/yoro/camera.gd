@@ -1,7 +1,7 @@
 ## An [XRCamera3D] that renders one eye, and synthesizes the other from its colour and depth.
 ##
-## Use it instead of the [XRCamera3D] below the [XROrigin3D]. The whole scene is drawn once, for [member dominant_eye],
-## a little wider than it is shown. Godot draws only what is on [member stereo_layers] for both eyes, tested against the
+## Use it instead of the [XRCamera3D] below the [XROrigin3D]. The whole scene is drawn once, or with [member foveation]
+## once for each level, for [member dominant_eye], a little wider than it is shown. Godot draws only what is on [member stereo_layers] for both eyes, tested against the
 ## depth of each eye: transparent objects, hands, interfaces.[br][br]
 ## It needs one of the Vulkan renderers, Mobile or Forward+. With other renderers, and if an eye cannot be synthesized,
 ## it is an [XRCamera3D] like any other: [method trouble] says why.
@@ -82,7 +82,7 @@ const _SWITCH_OFF := 0.35
 @export var preview_without_headset := false
 
 ## Where the eyes look, as a direction in the world, such as that of an eye tracker; it may change in each frame. Zero
-## stands for straight ahead.
+## stands for straight ahead, always: keep the last direction while a tracker has lost the eyes.
 var gaze := Vector3.ZERO
 
 var _source: YoroSource
@@ -134,7 +134,7 @@ func foveation_strength() -> int:
 
 ## Returns [member gaze] in the axes of an eye at [param at].
 func gaze_from(at: Transform3D) -> Vector3:
-	return at.basis.inverse() * gaze
+	return at.basis.inverse() * gaze if gaze.is_finite() else Vector3.FORWARD
 
 
 ## Returns the preview, or null if there is none.

@@ -65,3 +65,9 @@ func follow(world: World3D, rectangle: Rect2i, size: Vector2i) -> void:
 	var from := Vector2(rectangle.position) / Vector2(size)
 	var to := Vector2(rectangle.end) / Vector2(size)
 	_material.set_shader_parameter(&"rectangle", Vector4(from.x, from.y, to.x, to.y))
+	RenderingServer.instance_set_visible(_instance, true)
+
+
+## Leaves the world as it is.
+func rest() -> void:
+	RenderingServer.instance_set_visible(_instance, false)

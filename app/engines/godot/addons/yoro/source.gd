@@ -38,6 +38,8 @@ func is_ready() -> bool:
 ## [param shown]. [param effects] are drawn before the synthesis.
 func draw(of: YoroLevels, at: Transform3D, like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect]) -> void:
 	levels = of
+	if levels.inset_image == levels.inset:
+		_mask.rest()
 	if levels.inset == null:
 		inset.rest()
 	for eye in drawn():
@@ -46,7 +48,7 @@ func draw(of: YoroLevels, at: Transform3D, like: YoroCamera3D, shown: Viewport, 
 		var part := levels.inset_part if eye == inset else Rect2i(Vector2i.ZERO, levels.wide.size)
 		eye.synthesis.map = like.debug_view == YoroCamera3D.DebugView.HOLES
 		eye.follow(like, shown, effects, YoroMask.LAYER if image != views else 0)
-		if eye == inset:
+		if image != views:
 			_mask.follow(eye.world_3d, part, image.size)
 		# Levels of detail are those of the eye's own pixels in each level. The viewport has half of these.
 		var threshold := shown.mesh_lod_threshold * 0.5 * levels.whole.pitch / views.pitch
@@ -60,5 +62,6 @@ func draw(of: YoroLevels, at: Transform3D, like: YoroCamera3D, shown: Viewport, 
 
 ## Draws nothing.
 func rest() -> void:
+	_mask.rest()
 	wide.rest()
 	inset.rest()

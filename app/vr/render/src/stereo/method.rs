@@ -146,7 +146,10 @@ impl EyeTarget<'_> {
     /// Returns the texture as the target of a view of which the eye is this part, if the texture is as large as the view and
     /// the eye has this place in it.
     pub(super) fn around(&self, part: Part) -> Option<EyeTarget<'static>> {
-        let fits = |texture: &(glow::Texture, Image)| texture.1.size == part.image_size;
+        // A texture of sRGB would be decoded where the synthesis reads it.
+        let fits = |(_, image): &(glow::Texture, Image)| {
+            image.format == Format::Rgba8 && image.size == part.image_size
+        };
         let texture = self.texture.filter(|texture| fits(texture) && self.color.origin == part.origin)?;
         let color = Destination { origin: [0, 0], size: part.image_size, ..self.color };
         Some(EyeTarget { texture: Some(texture), ..EyeTarget::rectangle(color) })

@@ -190,7 +190,7 @@ fn prepared_frames_with_an_inset_compile_nothing() {
         let mut session = StereoSession::new(gl, choice, &settings, &options).unwrap();
         session.prepare(rig.scene(), true).unwrap();
         let made = Rc::new(Cell::new(0));
-        images.fit(&views, true).unwrap();
+        images.fit(&views, true, [None; 2]).unwrap();
         gl.set_observer(Some(Box::new(Counted(made.clone()))));
         for _ in 0..2 {
             rig.frame(&mut session, &views, FrameTargets::Images(&mut images));

@@ -103,13 +103,15 @@ impl OverlayPass {
             self.target = OverlayTarget::Direct;
             return Ok((to.color, false));
         }
-        if !keeps_depth && self.fit_tile(to.texture.map(|texture| (texture, size)))? {
+        // Both begin in the corner of their textures.
+        let is_in_corner = to.color.origin == [0, 0];
+        if !keeps_depth && is_in_corner && self.fit_tile(to.texture.map(|texture| (texture, size)))? {
             self.target = OverlayTarget::Tile;
             let tile = self.tile.as_ref().map(|(tile, _)| tile.part(size));
             return Ok((tile.unwrap_or(to.color), true));
         }
         // OpenGL ES averages between equal rectangles only.
-        if is_drawn_over && self.samples > 1 && to.color.origin == [0, 0] {
+        if is_drawn_over && self.samples > 1 && is_in_corner {
             self.target = OverlayTarget::Samples;
             let samples = match &mut self.multisample {
                 Some(samples) => samples,
@@ -218,7 +220,7 @@ impl OverlayPass {
                 let to = &frame.to(eye).color;
                 let pass = self.gl.pass("copy").read("copied", image.color(0));
                 pass.write([to.image(Format::Rgba8)]).run(|| image.copy_color([0, 0], to));
-                if let Some(depth) = self.depth() {
+                if let Some(depth) = self.depth().filter(|_| over.keeps_depth) {
                     frame.write_depth(eye, &depth);
                 }
             }
