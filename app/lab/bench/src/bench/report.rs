@@ -16,7 +16,7 @@ use yoro_media::PictureError;
 const TITLE: &str = "yoro: every method side by side";
 
 /// Explains the marks by which the paper's figures are recognized.
-const PAPERS_MARK: &str = "What is *in italics*, hollow or dashed is the paper's (\"You Only Render Once\", MobiSys '25): \
+const PAPERS_MARK: &str = "What is in italics, hollow or dashed is the paper's (\"You Only Render Once\", MobiSys '25): \
 its own scenes, six phones and a Quest 2.";
 
 /// Explains how frame times are measured.
