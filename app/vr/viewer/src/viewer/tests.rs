@@ -285,7 +285,9 @@ fn a_scene_that_cannot_be_loaded_is_explained_in_view() {
     run.load();
     assert_eq!(run.frame().scene, SceneState::Failed);
     assert!(run.viewer.viewer().failure().unwrap().contains("room.obj"));
-    assert!(run.image().chunks_exact(4).any(|p| p[0] > 200), "the reason is in view");
+    let brightest = run.image().chunks_exact(4).map(|p| p[0]).max();
+    // Small letters before a background that is nearly black.
+    assert!(brightest > Some(150), "the reason is in view: {brightest:?}");
     let mistake = Cardboard::new(settings(&["scene=palace"]), screen(), &folders).err().unwrap().to_string();
     assert!(mistake.contains("palace") && mistake.contains("room.obj"), "{mistake}");
 }
