@@ -61,7 +61,7 @@ fn files_that_are_no_scenes_are_refused() {
     fs::write(at.join("scene.blend"), "BLENDER").unwrap();
     for (scene, naming) in [
         ("bistroo", &["\"bistroo\"", "choose one of", "prototype"][..]),
-        ("damaged.obj", &["damaged.obj, line 3"]),
+        ("damaged.obj", &["damaged.obj: up to line 3"]),
         ("scene.blend", &["scene.blend is not a scene", ".obj"]),
     ] {
         run(at, &format!("render {scene} --size 64x64 --out out")).refuses(naming);
