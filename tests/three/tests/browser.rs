@@ -388,7 +388,9 @@ fn frames_leave_nothing_behind_and_say_why_they_are_threes() {
     }
     // The best of three ways that holds the rate, otherwise the cheapest one.
     for (gpu, way, reason) in [
-        ("[14, 12, 9]", "rendered", "holds the rate"),
+        ("[13, 12, 9]", "rendered", "holds the rate"),
+        // Without room, a frame that takes longer is late.
+        ("[14, 12, 9]", "synthesized", "holds the rate"),
         ("[20, 13, 9]", "synthesized", "holds the rate"),
         ("[30, 22, 18]", "filled", "cheaper"),
     ] {
