@@ -49,18 +49,16 @@ fn plain(way: &str) -> &str {
     way.trim_start_matches('[').split(']').next().unwrap()
 }
 
-/// Returns the ways of a table.
-fn ways(list: &List, calls: bool) -> Vec<&str> {
-    let ways = list.ways.iter().map(String::as_str);
-    ways.filter(|way| !calls || CALLERS.contains(&plain(way))).collect()
+/// Returns the heads of a table's columns. Those who call yoro themselves have followed the links already.
+fn heads(list: &List, calls: bool) -> Vec<&str> {
+    let all = list.ways.iter().map(String::as_str);
+    if calls { all.map(plain).filter(|way| CALLERS.contains(way)).collect() } else { all.collect() }
 }
 
 /// Returns a table, and a line with its notes.
 fn table(list: &List, document: &str, calls: bool) -> String {
-    let ways = ways(list, calls);
-    let heads = ways.iter().map(|way| if calls { plain(way) } else { way });
-    let mut text =
-        format!("| |{}|\n|---|{}\n", heads.collect::<Vec<_>>().join("|"), ":-:|".repeat(ways.len()));
+    let heads = heads(list, calls);
+    let mut text = format!("| |{}|\n|---|{}\n", heads.join("|"), ":-:|".repeat(heads.len()));
     let mut notes: Vec<&str> = Vec::new();
     for feature in list.feature.iter().filter(|feature| feature.calls == calls) {
         let cell = |way: &&str| {
@@ -79,7 +77,7 @@ fn table(list: &List, document: &str, calls: bool) -> String {
             });
             note.map_or_else(|| mark.to_owned(), |note| format!("{mark} {note}"))
         };
-        let cells: Vec<String> = ways.iter().map(cell).collect();
+        let cells: Vec<String> = heads.iter().map(cell).collect();
         let name = feature.name.replace("](#", &format!("]({document}#"));
         text += &format!("| {name} |{}|\n", cells.join("|"));
     }
@@ -94,7 +92,7 @@ fn the_documents_have_the_tables() {
     for (file, document, calls) in TABLES {
         let path = root().join(file);
         let text = fs::read_to_string(&path).unwrap();
-        let first = if calls { plain(ways(&list, calls)[0]) } else { ways(&list, calls)[0] };
+        let first = heads(&list, calls)[0];
         let begin = text.find(&format!("| |{first}|")).unwrap_or_else(|| panic!("{file} has no such table"));
         let line = |from: usize| from + text[from..].find("\n\n").unwrap() + 2;
         // The table, and the paragraph with its notes.
@@ -115,7 +113,7 @@ fn what_works_has_a_test() {
         let mut told: Vec<&str> = feature.works.keys().map(String::as_str).collect();
         told.extend(feature.missing.iter().chain(&feature.yours).map(String::as_str));
         told.sort_unstable();
-        let mut every: Vec<&str> = ways(&list, feature.calls).into_iter().map(plain).collect();
+        let mut every: Vec<&str> = heads(&list, feature.calls).into_iter().map(plain).collect();
         every.sort_unstable();
         assert_eq!(told, every, "{}: each way once", feature.name);
         assert!(feature.notes.keys().all(|way| told.contains(&way.as_str())), "{}", feature.name);

@@ -1,5 +1,5 @@
-//! MTL material libraries, statement by statement: keywords in any spelling, numbers checked. What is unintelligible has
-//! the default.
+//! MTL material libraries, statement by statement: keywords in upper or lower case, numbers checked. A value that
+//! cannot be read is named in a warning, and the default takes its place.
 
 use std::collections::HashMap;
 

@@ -174,9 +174,10 @@ pub struct Chooser {
     watch: Watch,
     /// The heat at the last measurement.
     heat: Option<f32>,
-    /// True if the chosen way missed the rate before the last measurement, and how often that changed nothing.
-    is_missed: bool,
-    vain: u32,
+    /// True if the last measurement began because the chosen way missed the rate.
+    measured_after_miss: bool,
+    /// How many such measurements in a row have chosen the same way again.
+    unchanged_after_miss: u32,
 }
 
 /// The current phase.
@@ -263,8 +264,8 @@ const OVERHEAD: f32 = 0.002;
 /// that time if nothing changes.
 const SHORTEST_REST_NS: i64 = 30_000 * MS;
 const REST_BEFORE_MISSES_NS: i64 = 5_000 * MS;
-/// How often that rest doubles while such a measurement finds that the way holds the rate.
-const MAX_VAIN: u32 = 6;
+/// How often the rest doubles after measurements that began with a miss and chose the same way again.
+const MAX_DOUBLINGS: u32 = 6;
 const REST_NS: [i64; 2] = [60_000 * MS, 600_000 * MS];
 /// Changes of cost, pace and heat that are worth another measurement.
 const DRIFT: f32 = 1.3;
@@ -287,8 +288,8 @@ impl Chooser {
             refresh_hz: 0.0,
             watch: Watch::default(),
             heat: None,
-            is_missed: false,
-            vain: 0,
+            measured_after_miss: false,
+            unchanged_after_miss: 0,
         }
     }
 
@@ -426,9 +427,9 @@ impl Chooser {
                 self.heat = self.heat.or(heat);
                 let window = self.watch.end_window(now_ns, end.refresh_hz);
                 let has_drifted = window.is_some_and(|window| self.watch.has_drifted(&window));
-                let misses = window.is_some_and(|window| self.misses_rate(&window, end.refresh_hz));
-                let misses = misses && rested_ns >= REST_BEFORE_MISSES_NS << self.vain;
-                self.is_missed = misses;
+                let misses = window.is_some_and(|window| self.misses_rate(&window, end.refresh_hz))
+                    && rested_ns >= REST_BEFORE_MISSES_NS << self.unchanged_after_miss;
+                self.measured_after_miss = misses;
                 if is_due || (rested_ns >= SHORTEST_REST_NS && (has_drifted || heat_has_drifted)) || misses {
                     self.measure(end);
                 }
@@ -466,8 +467,9 @@ impl Chooser {
             return;
         }
         let choice = self.choose();
-        let is_vain = self.is_missed && choice.path == self.choice.path;
-        self.vain = if is_vain { (self.vain + 1).min(MAX_VAIN) } else { 0 };
+        let is_unchanged = self.measured_after_miss && choice.path == self.choice.path;
+        self.unchanged_after_miss =
+            if is_unchanged { (self.unchanged_after_miss + 1).min(MAX_DOUBLINGS) } else { 0 };
         self.choice = choice;
         let rest_ns = self.rest(now_ns - begin_ns);
         self.watch = Watch::default();

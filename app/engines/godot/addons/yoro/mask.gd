@@ -68,6 +68,6 @@ func follow(world: World3D, rectangle: Rect2i, size: Vector2i) -> void:
 	RenderingServer.instance_set_visible(_instance, true)
 
 
-## Leaves the world as it is.
+## Hides the frame.
 func rest() -> void:
 	RenderingServer.instance_set_visible(_instance, false)

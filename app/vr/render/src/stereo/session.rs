@@ -337,7 +337,7 @@ impl StereoSession {
         if let Some(auto) = &mut self.auto {
             auto.end_frame(load);
         }
-        // A better but dearer path is left before every second frame is.
+        // While a path is in use that is not the cheapest, the chooser gives up that path before the rate is halved.
         let is_settled = self.auto.as_ref().is_none_or(|auto| !auto.is_measuring() && !auto.has_cheaper());
         if !is_settled {
             self.rate.interrupt();
