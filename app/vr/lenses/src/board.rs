@@ -198,7 +198,8 @@ impl Board {
         pair: &EyePair,
         eyes: &[Destination; 2],
     ) {
-        self.gl.pass("menu").run(|| {
+        let images = eyes.each_ref().map(|eye| eye.image(Format::Rgba8));
+        self.gl.pass("menu").read("panel", &self.texture).load(images).run(|| {
             self.gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
                 self.run(&self.texture, to_panel(board, pair, eye), pointer, false, &eyes[eye.index()]);
@@ -209,7 +210,7 @@ impl Board {
 
     /// Fills an image of the panel's size with linear colour for a compositor, not premultiplied by alpha.
     pub fn draw_linear(&self, pointer: Option<Vec2>, to: &Destination) {
-        self.gl.pass("menu").run(|| {
+        self.gl.pass("menu").read("panel", &self.texture).write([to.image(Format::Rgba8)]).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.run(&self.texture, onto(to), pointer, true, to);
         });
@@ -220,26 +221,31 @@ impl Board {
     pub fn draw_flat(&self, window: &Destination, has_picture: bool) {
         let ([x, y], size) = flat_place(window.size);
         let origin = [window.origin[0] + x, window.origin[1] + y];
-        self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
-        self.gl.fill(window.origin, window.size, [f32::from(GROUND) / 255.0; 4]);
-        let panel = Destination { origin, size, ..*window };
-        self.gl.pass("menu").run(|| {
+        let mut pass = self.gl.pass("menu").read("panel", &self.texture);
+        if has_picture {
+            pass = pass.read("panel", &self.picture);
+        }
+        pass.write([window.image(Format::Rgba8)]).run(|| {
+            self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
+            self.gl.fill(window.origin, window.size, [f32::from(GROUND) / 255.0; 4]);
+            let panel = Destination { origin, size, ..*window };
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.run(&self.texture, onto(&panel), None, false, &panel);
+            if has_picture {
+                let scaled = |n: usize| (n as u64 * u64::from(size[0]) / SIZE[0] as u64) as u32;
+                let [width, height] = PICTURE.map(scaled);
+                let at = [size[0] - width - scaled(INSET), size[1] - height - scaled(INSET)];
+                let origin = [origin[0] + at[0], origin[1] + at[1]];
+                let to = Destination { origin, size: [width, height], ..*window };
+                self.run(&self.picture, onto(&to), None, false, &to);
+            }
         });
-        if has_picture {
-            let scaled = |n: usize| (n as u64 * u64::from(size[0]) / SIZE[0] as u64) as u32;
-            let [width, height] = PICTURE.map(scaled);
-            let at = [size[0] - width - scaled(INSET), size[1] - height - scaled(INSET)];
-            let origin = [origin[0] + at[0], origin[1] + at[1]];
-            let to = Destination { origin, size: [width, height], ..*window };
-            self.gl.pass("menu").run(|| self.run(&self.picture, onto(&to), None, false, &to));
-        }
     }
 
     /// Draws a cross into a window's upper left corner and a gear into its upper right corner, each `side` pixels wide.
     pub fn draw_corners(&self, side: u32, window: &Destination) {
-        self.gl.pass("menu").run(|| {
+        let pass = self.signs.iter().fold(self.gl.pass("menu"), |pass, sign| pass.read("panel", sign));
+        pass.load([window.image(Format::Rgba8)]).run(|| {
             self.gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for (sign, right) in self.signs.iter().zip([0, window.size[0].saturating_sub(side)]) {
                 let y = window.origin[1] + window.size[1].saturating_sub(side);

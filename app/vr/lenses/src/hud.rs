@@ -175,7 +175,8 @@ impl Panel<'_> {
     /// Fills a rectangle of the panel's size. The background of the letters is translucent; colour is not premultiplied
     /// by alpha.
     pub fn draw(&self, to: &Destination) {
-        self.hud.gl.pass("hud").run(|| {
+        let pass = self.hud.gl.pass("hud").read("panel", &self.hud.texture);
+        pass.write([to.image(Format::Rgba8)]).run(|| {
             self.hud.gl.set_raster_state(&RasterState::SCREEN);
             self.hud.draw(to);
         });
@@ -184,7 +185,8 @@ impl Panel<'_> {
     /// Draws the panel into the images of both eyes.
     pub fn draw_into_eyes(&self, pair: &EyePair, eyes: &[Destination; 2]) {
         let gl = &self.hud.gl;
-        gl.pass("hud").run(|| {
+        let images = eyes.each_ref().map(|eye| eye.image(Format::Rgba8));
+        gl.pass("hud").read("panel", &self.hud.texture).load(images).run(|| {
             gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
                 let to = &eyes[eye.index()];

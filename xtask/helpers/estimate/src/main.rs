@@ -27,7 +27,7 @@ use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, EyePair, FoveationLeve
 use yoro_assets::ShadingStyle;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Capabilities, Context};
-use yoro_render::stereo::{FrameTargets, Method, StereoImages, StereoOptions, StereoSession};
+use yoro_render::stereo::{FrameTargets, HoleMethod, Method, StereoImages, StereoOptions, StereoSession};
 use yoro_render::{DepthReader, PreparedScene, RenderSettings, ViewTargets};
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
 use yoro_test_support::record::{RecordedPass, Recorder};
@@ -52,13 +52,29 @@ struct Args {
     viewpoints: usize,
 }
 
-/// Methods whose frames are recorded, by their names in the tables.
-const METHODS: [(&str, Method, FoveationLevel); 5] = [
-    ("conventional", Method::Conventional, FoveationLevel::Off),
-    (MULTIVIEW, Method::Instanced, FoveationLevel::Off),
-    ("yoro-gather", Method::Synthesized, FoveationLevel::Off),
-    ("conventional-medium", Method::Conventional, FoveationLevel::Medium),
-    ("yoro-medium", Method::Synthesized, FoveationLevel::Medium),
+/// What is recorded.
+#[derive(Clone, Copy)]
+struct Recipe {
+    /// Its name in the tables.
+    name: &'static str,
+    method: Method,
+    foveation: FoveationLevel,
+    holes: HoleMethod,
+}
+
+impl Recipe {
+    const fn new(name: &'static str, method: Method) -> Recipe {
+        Recipe { name, method, foveation: FoveationLevel::Off, holes: HoleMethod::Filled }
+    }
+}
+
+const RECIPES: [Recipe; 6] = [
+    Recipe::new("conventional", Method::Conventional),
+    Recipe::new(MULTIVIEW, Method::Instanced),
+    Recipe::new("yoro-gather", Method::Synthesized),
+    Recipe { holes: HoleMethod::Rendered, ..Recipe::new("yoro-holes-rendered", Method::Synthesized) },
+    Recipe { foveation: FoveationLevel::Medium, ..Recipe::new("conventional-medium", Method::Conventional) },
+    Recipe { foveation: FoveationLevel::Medium, ..Recipe::new("yoro-medium", Method::Synthesized) },
 ];
 /// The passes of `gather`.
 const PASSES: [&str; 3] = ["gather tiles", "gather spans", "gather march"];
@@ -141,29 +157,27 @@ impl Estimator {
     fn frames(&mut self, pair: &EyePair) -> anyhow::Result<Vec<(&'static str, Frame)>> {
         let mut lamps = self.lamps(pair)?;
         let mut frames = Vec::new();
-        for (name, method, level) in METHODS {
-            let passes = self.record(method, pair, level)?;
-            let counted = if method == Method::Synthesized { self.count(pair, level)? } else { Vec::new() };
-            let mut frame = match name {
+        for recipe in RECIPES {
+            let passes = self.record(&recipe, pair)?;
+            let counted = match recipe.method {
+                Method::Synthesized => self.count(pair, recipe.foveation)?,
+                _ => Vec::new(),
+            };
+            let mut frame = match recipe.name {
                 MULTIVIEW => self.model.multiview(&passes, pair.size, &mut lamps)?,
                 _ => self.model.frame(&passes, pair.size, &mut lamps, laws(&counted))?,
             };
             self.add_synthesis(&mut frame, &passes, &counted)?;
-            frames.push((name, frame));
+            frames.push((recipe.name, frame));
         }
         Ok(frames)
     }
 
     /// Returns the passes of a method's first frame.
-    fn record(
-        &mut self,
-        method: Method,
-        pair: &EyePair,
-        level: FoveationLevel,
-    ) -> anyhow::Result<Vec<RecordedPass>> {
-        let options = StereoOptions { policy: None, ..StereoOptions::default() };
-        let mut session = StereoSession::new(&self.gl, method.into(), &self.settings, &options)?;
-        let views = pair.stereo_views(level.foveation().as_ref(), Gaze::Axes(pair.axes()))?;
+    fn record(&mut self, recipe: &Recipe, pair: &EyePair) -> anyhow::Result<Vec<RecordedPass>> {
+        let options = StereoOptions { policy: None, holes: recipe.holes, ..StereoOptions::default() };
+        let mut session = StereoSession::new(&self.gl, recipe.method.into(), &self.settings, &options)?;
+        let views = pair.stereo_views(recipe.foveation.foveation().as_ref(), Gaze::Axes(pair.axes()))?;
         let mut images = StereoImages::new(&self.gl)?;
         session.prepare(&mut self.scene, views.inset.is_some())?;
         self.recorder.start();

@@ -80,25 +80,26 @@ impl Screen {
         let gl = &self.gl;
         let passes = self.reach.map_or(1, |reach| hole_depth(&image.mask).div_ceil(reach).max(1));
         let size = image.size();
-        let (mut color, mut disparity) = (input.color.raw(), input.disparity.raw());
+        let (mut color, mut disparity) = (&input.color, &input.disparity);
         gl.set_raster_state(&RasterState::SCREEN);
-        gl.pass(self.name).run(|| {
-            for pass in 0..passes {
-                let target = &self.targets[pass as usize % 2];
+        for pass in 0..passes {
+            let target = &self.targets[pass as usize % 2];
+            let declared = gl.pass(self.name).read("color_map", color).read("disparity_map", disparity);
+            declared.write(target.images()).run(|| {
                 target.bind();
                 self.program
                     .bind()
-                    .texture("color_map", 0, color)
-                    .texture("disparity_map", 1, disparity)
+                    .texture_of("color_map", 0, color)
+                    .texture_of("disparity_map", 1, disparity)
                     .set("size", IVec2::new(size[0] as i32, size[1] as i32))
                     .set("mirrored", image.eye == Eye::Right);
                 gl.draw_screen();
-                color = target.color(0).raw();
-                if self.carries_disparity {
-                    disparity = target.color(1).raw();
-                }
+            });
+            color = target.color(0);
+            if self.carries_disparity {
+                disparity = target.color(1);
             }
-        });
+        }
         &self.targets[(passes as usize - 1) % 2]
     }
 }

@@ -7,7 +7,7 @@ use openxr as xr;
 
 use super::error::{XrError, call};
 use yoro::eyes::{Eye, Frustum};
-use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource};
+use yoro_gl::{Context, Destination, Format, GlError, Mesh, Program, RasterState, ShaderSource};
 
 /// The hidden parts of both eyes.
 pub(super) struct Mask {
@@ -62,7 +62,8 @@ impl Mask {
         if !self.hides() {
             return;
         }
-        self.gl.pass("visibility mask").run(|| {
+        let images = to.each_ref().map(|eye| eye.image(Format::Rgba8));
+        self.gl.pass("visibility mask").load(images).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             for eye in Eye::BOTH {
                 let (Some(mesh), f) = (&self.meshes[eye.index()], &frusta[eye.index()]) else { continue };
@@ -80,7 +81,7 @@ impl Mask {
 mod tests {
     use super::*;
     use yoro_context::{Backend, Headless};
-    use yoro_gl::{Filter, Format, RenderTarget};
+    use yoro_gl::{Filter, RenderTarget};
 
     #[test]
     fn hidden_triangles_are_black_and_nothing_else() {

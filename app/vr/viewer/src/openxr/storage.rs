@@ -112,7 +112,14 @@ impl Storage {
             set_encoding(&self.gl, true);
             return;
         };
-        self.gl.pass("transfer").run(|| {
+        let mut pass = self.gl.pass("transfer");
+        for (frame, images) in frames.iter().zip(images.layers()) {
+            pass = yoro::eyes::Eye::BOTH
+                .into_iter()
+                .fold(pass, |pass, eye| pass.read("source", frame.eye(eye).color(0)));
+            pass = pass.write(images.each_ref().map(|image| image.color.image(Format::Srgb8Alpha8)));
+        }
+        pass.run(|| {
             // Synthesis turns encoding off.
             if has_control(&self.gl) {
                 set_encoding(&self.gl, true);

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use glam::Vec4;
 use yoro::eyes::Eye;
-use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource, Texture};
+use yoro_gl::{Context, Destination, Format, GlError, Program, RasterState, ShaderSource, Texture};
 use yoro_render::stereo::StereoFrame;
 
 use crate::settings::Display;
@@ -70,11 +70,15 @@ impl Show {
         &self,
         program: &Program,
         first: &Texture,
-        second: Option<(&str, &Texture)>,
+        second: Option<(&'static str, &Texture)>,
         to: &Destination,
         columns: Range<u32>,
     ) {
-        self.gl.pass("show").run(|| {
+        let mut pass = self.gl.pass("show").read("first", first);
+        if let Some((name, texture)) = second {
+            pass = pass.read(name, texture);
+        }
+        pass.write([to.image(Format::Rgba8)]).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             let origin = [to.origin[0] + columns.start, to.origin[1]];
             self.gl.bind_framebuffer(to.framebuffer, origin, [columns.end - columns.start, to.size[1]]);
@@ -82,7 +86,13 @@ impl Show {
         });
     }
 
-    fn draw(&self, program: &Program, first: &Texture, second: Option<(&str, &Texture)>, to: &Destination) {
+    fn draw(
+        &self,
+        program: &Program,
+        first: &Texture,
+        second: Option<(&'static str, &Texture)>,
+        to: &Destination,
+    ) {
         let rectangle = [to.origin[0], to.origin[1], to.size[0], to.size[1]].map(|n| n as f32);
         program.bind().texture_of("first", 0, first).set("rectangle", Vec4::from(rectangle));
         if let Some((name, texture)) = second {
@@ -149,7 +159,8 @@ impl Show {
     /// Draws an image with its depth into the framebuffer that is bound, which this library did not create.
     pub fn with_depth(&self, image: &Texture, depth: &Texture, origin: [u32; 2], size: [u32; 2]) {
         let to = Destination { framebuffer: None, origin, size };
-        self.gl.pass("show").run(|| {
+        let pass = self.gl.pass("show").read("first", image).read("depth_map", depth);
+        pass.write([to.image(Format::Rgba8)]).run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
             self.draw(&self.with_depth, image, Some(("depth_map", depth)), &to);
             self.gl.set_raster_state(&RasterState::SCREEN);
