@@ -14,7 +14,7 @@ use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
 use yoro_render::stereo::{
     HoleMethod, ImBufferSize, Method, Paper, PaperOptions, StereoOptions, StereoSession,
 };
-use yoro_render::{DepthCopy, GpuScene, PreparedScene, RenderSettings, Renderer};
+use yoro_render::{DepthCopy, PreparedScene, RenderSettings};
 use yoro_shaders::{Assembled, MissingFile};
 use yoro_test_support::record::Recorder;
 
@@ -147,7 +147,11 @@ fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         // Materials without and with all maps, in every kind of opacity, represent all others under other settings.
         scene::keep_plain_and_full(&mut scene);
         if !every && style != ShadingStyle::Realistic {
-            Renderer::new(gl, &settings(), &GpuScene::upload(gl, scene)?)?;
+            // Outlines are drawn in holes, too.
+            let options = StereoOptions { holes: HoleMethod::Rendered, ..StereoOptions::default() };
+            let mut scene = PreparedScene::new(gl, scene, &settings())?;
+            StereoSession::new(gl, Method::Synthesized.into(), &settings(), &options)?
+                .prepare(&mut scene, false)?;
             continue;
         }
         renderer(gl, scene.clone(), every)?;
