@@ -114,10 +114,12 @@ pub fn samples(pass: &RecordedPass) -> u32 {
 }
 
 /// Returns the number of fragments of a draw call: the counted ones, or else all pixels of the view. With a mask of
-/// samples, a triangle that covers the view passes fewer samples of as many pixels.
+/// samples, a triangle that covers the view passes fewer samples of as many pixels. It shades each pixel once, also where a
+/// pass that is declared with one sample is drawn into several.
 pub fn fragments(pass: &RecordedPass, draw: &RecordedDraw) -> f64 {
     let passed = draw.samples_passed.filter(|_| pass.declaration.name != CARRY);
-    passed.map_or(pixels(draw.area), |passed| passed as f64 / f64::from(samples(pass)))
+    let most = if draw.shape == Shape::Screen { pixels(draw.area) } else { f64::INFINITY };
+    passed.map_or(pixels(draw.area), |passed| most.min(passed as f64 / f64::from(samples(pass))))
 }
 
 #[cfg(test)]
@@ -162,6 +164,9 @@ pub mod tests {
         };
         assert_eq!(bytes("surfaces", MESH, "diffuse_map"), PIXELS + 30.0);
         assert_eq!(bytes("surfaces", MESH, "normal_map"), PIXELS);
+        let mut screen = pass("composite", "a.frag", Shape::Screen, &[]);
+        screen.draws[0].samples_passed = Some(4 * PIXELS as u64);
+        assert_eq!(fragments(&screen, &screen.draws[0]), PIXELS);
         assert_eq!(bytes("bloom", Shape::Screen, "source"), PIXELS + PIXELS);
         assert_eq!(bytes(MARCH, Shape::Screen, "depth_map"), PIXELS + 0.25 * PIXELS);
         assert_eq!(vertex_bytes(&pass("surfaces", "a.frag", MESH, &[])), 4.0 * 32.0 + 6.0 * 4.0);
