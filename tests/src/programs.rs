@@ -99,11 +99,21 @@ fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &Scene) -> anyhow
     let mut scene = PreparedScene::new(gl, scene.clone(), settings)?;
     for method in Method::ALL {
         if is_tested(method, settings, gl) {
-            let options = StereoOptions { holes: HoleMethod::Rendered, ..StereoOptions::default() };
-            StereoSession::new(gl, method.into(), settings, &options)?.prepare(&mut scene, false)?;
+            prepare(gl, method, settings, &mut scene)?;
         }
     }
     Ok(())
+}
+
+/// Builds the programs of a scene with a method, which renders holes if it can.
+fn prepare(
+    gl: &Rc<Context>,
+    method: Method,
+    settings: &RenderSettings,
+    scene: &mut PreparedScene,
+) -> anyhow::Result<()> {
+    let options = StereoOptions { holes: HoleMethod::Rendered, ..StereoOptions::default() };
+    Ok(StereoSession::new(gl, method.into(), settings, &options)?.prepare(scene, false)?)
 }
 
 /// Returns settings with small shadow maps, whose size no shader depends on.
@@ -147,11 +157,9 @@ fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         // Materials without and with all maps, in every kind of opacity, represent all others under other settings.
         scene::keep_plain_and_full(&mut scene);
         if !every && style != ShadingStyle::Realistic {
-            // Outlines are drawn in holes, too.
-            let options = StereoOptions { holes: HoleMethod::Rendered, ..StereoOptions::default() };
+            // Outlines have programs of their own where holes are rendered.
             let mut scene = PreparedScene::new(gl, scene, &settings())?;
-            StereoSession::new(gl, Method::Synthesized.into(), &settings(), &options)?
-                .prepare(&mut scene, false)?;
+            prepare(gl, Method::Synthesized, &settings(), &mut scene)?;
             continue;
         }
         renderer(gl, scene.clone(), every)?;

@@ -221,23 +221,19 @@ impl Board {
     pub fn draw_flat(&self, window: &Destination, has_picture: bool) {
         let ([x, y], size) = flat_place(window.size);
         let origin = [window.origin[0] + x, window.origin[1] + y];
+        let panel = Destination { origin, size, ..*window };
+        let picture = has_picture.then(|| picture_place(&panel));
         let mut pass = self.gl.pass("menu").read("panel", &self.texture);
-        if has_picture {
+        if picture.is_some() {
             pass = pass.read("panel", &self.picture);
         }
         pass.write([window.image(Format::Rgba8)]).run(|| {
             self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
             self.gl.fill(window.origin, window.size, [f32::from(GROUND) / 255.0; 4]);
-            let panel = Destination { origin, size, ..*window };
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.run(&self.texture, onto(&panel), None, false, &panel);
-            if has_picture {
-                let scaled = |n: usize| (n as u64 * u64::from(size[0]) / SIZE[0] as u64) as u32;
-                let [width, height] = PICTURE.map(scaled);
-                let at = [size[0] - width - scaled(INSET), size[1] - height - scaled(INSET)];
-                let origin = [origin[0] + at[0], origin[1] + at[1]];
-                let to = Destination { origin, size: [width, height], ..*window };
-                self.run(&self.picture, onto(&to), None, false, &to);
+            if let Some(to) = &picture {
+                self.run(&self.picture, onto(to), None, false, to);
             }
         });
     }
@@ -277,6 +273,14 @@ impl Board {
             .set("dot_radius", radius / Vec2::from(board_metres()));
         self.gl.draw_screen();
     }
+}
+
+/// Returns where the camera's picture is drawn on a flat panel.
+fn picture_place(panel: &Destination) -> Destination {
+    let scaled = |n: usize| (n as u64 * u64::from(panel.size[0]) / SIZE[0] as u64) as u32;
+    let (size, inset) = (PICTURE.map(scaled), scaled(INSET));
+    let origin = [0, 1].map(|i| panel.origin[i] + panel.size[i] - size[i] - inset);
+    Destination { origin, size, ..*panel }
 }
 
 /// Returns the lower left corner and the size of the flat panel in a window of this size, in pixels.

@@ -7,7 +7,7 @@ use glam::{Vec3, Vec4};
 use crate::text::{CELL, Letters};
 use yoro::eyes::{Eye, EyePair};
 use yoro_gl::{
-    Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
+    Blend, Context, Destination, Filter, Format, GlError, Pass, Program, RasterState, ShaderSource, Texture,
 };
 
 /// Maximum number of characters in a line of the panel; longer lines are cut.
@@ -175,7 +175,7 @@ impl Panel<'_> {
     /// Fills a rectangle of the panel's size. The background of the letters is translucent; colour is not premultiplied
     /// by alpha.
     pub fn draw(&self, to: &Destination) {
-        let pass = self.hud.gl.pass("hud").read("panel", &self.hud.texture);
+        let pass = self.declare(self.hud.gl.pass("hud"));
         pass.write([to.image(Format::Rgba8)]).run(|| {
             self.hud.gl.set_raster_state(&RasterState::SCREEN);
             self.hud.draw(to);
@@ -186,7 +186,7 @@ impl Panel<'_> {
     pub fn draw_into_eyes(&self, pair: &EyePair, eyes: &[Destination; 2]) {
         let gl = &self.hud.gl;
         let images = eyes.each_ref().map(|eye| eye.image(Format::Rgba8));
-        gl.pass("hud").read("panel", &self.hud.texture).load(images).run(|| {
+        self.declare(gl.pass("hud")).load(images).run(|| {
             gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
                 let to = &eyes[eye.index()];
@@ -196,6 +196,11 @@ impl Panel<'_> {
             }
             gl.set_raster_state(&RasterState::SCREEN);
         });
+    }
+
+    /// Declares that a pass reads the panel.
+    pub(crate) fn declare<'a>(&self, pass: Pass<'a>) -> Pass<'a> {
+        pass.read("panel", &self.hud.texture)
     }
 
     /// Sets what the lenses' pass reads to draw the panel over an eye.

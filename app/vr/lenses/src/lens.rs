@@ -9,7 +9,7 @@ use crate::hud::Panel;
 use crate::optics::{Optics, mesh_strip};
 use yoro::eyes::{Composition, Eye, EyePair, Frustum};
 use yoro::opengl::{LevelImages, Part};
-use yoro_gl::{Context, Destination, Format, GlError, Image, Mesh, Program, RasterState, ShaderSource};
+use yoro_gl::{Context, Destination, Format, GlError, Mesh, Pass, Program, RasterState, ShaderSource};
 
 /// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are specified. For
 /// acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
@@ -79,8 +79,10 @@ impl LensPass {
         turn: Quat,
         window: &Destination,
     ) {
+        let pass = self.gl.pass("lens").write([window.image(Format::Rgba8)]);
+        let pass = eyes.iter().fold(pass, |pass, (_, composition)| LevelImages::declare(pass, composition));
         if eyes.iter().all(|(images, _)| images.inset.is_none()) {
-            return self.draw(eyes, &self.program, turn, window, |eye| {
+            return self.draw(pass, &self.program, turn, window, |eye| {
                 let (LevelImages { wide, .. }, composition) = &eyes[eye.index()];
                 let place = wide.part.map_or(Vec4::new(1.0, 1.0, 0.0, 0.0), |Part { origin, image_size }| {
                     let [[w, h], [x, y]] = [composition.wide.size, origin]
@@ -91,7 +93,8 @@ impl LensPass {
             });
         }
         let Some(program) = &self.of_levels else { return };
-        self.draw(eyes, program, turn, window, |eye| {
+        let pass = panel.into_iter().fold(pass, |pass, (panel, _)| panel.declare(pass));
+        self.draw(pass, program, turn, window, |eye| {
             let (images, composition) = &eyes[eye.index()];
             images.set(program, composition, [0, 0]);
             match panel {
@@ -106,24 +109,9 @@ impl LensPass {
         });
     }
 
-    fn draw(
-        &self,
-        eyes: &[(LevelImages, Composition); 2],
-        program: &Program,
-        turn: Quat,
-        window: &Destination,
-        set_eye: impl Fn(Eye),
-    ) {
+    fn draw(&self, pass: Pass, program: &Program, turn: Quat, window: &Destination, set_eye: impl Fn(Eye)) {
         let [width, height] = window.size;
-        let color = |size| Image { format: Format::Rgba8, size, samples: 1 };
-        let mut pass = self.gl.pass("lens");
-        for (_, composition) in eyes {
-            pass = pass.read("image", color(composition.wide.size));
-            if let Some(inset) = composition.inset {
-                pass = pass.read("inset_map", color(inset.place.size));
-            }
-        }
-        pass.write([window.image(Format::Rgba8)]).run(|| {
+        pass.run(|| {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
             self.gl.fill(window.origin, window.size, [0.0, 0.0, 0.0, 1.0]);

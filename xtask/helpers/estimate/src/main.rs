@@ -52,9 +52,8 @@ struct Args {
     viewpoints: usize,
 }
 
-/// What is recorded.
-#[derive(Clone, Copy)]
-struct Recipe {
+/// A method with its options, whose frames are recorded.
+struct Contender {
     /// Its name in the tables.
     name: &'static str,
     method: Method,
@@ -62,19 +61,22 @@ struct Recipe {
     holes: HoleMethod,
 }
 
-impl Recipe {
-    const fn new(name: &'static str, method: Method) -> Recipe {
-        Recipe { name, method, foveation: FoveationLevel::Off, holes: HoleMethod::Filled }
+impl Contender {
+    const fn new(name: &'static str, method: Method) -> Contender {
+        Contender { name, method, foveation: FoveationLevel::Off, holes: HoleMethod::Filled }
     }
 }
 
-const RECIPES: [Recipe; 6] = [
-    Recipe::new("conventional", Method::Conventional),
-    Recipe::new(MULTIVIEW, Method::Instanced),
-    Recipe::new("yoro-gather", Method::Synthesized),
-    Recipe { holes: HoleMethod::Rendered, ..Recipe::new("yoro-holes-rendered", Method::Synthesized) },
-    Recipe { foveation: FoveationLevel::Medium, ..Recipe::new("conventional-medium", Method::Conventional) },
-    Recipe { foveation: FoveationLevel::Medium, ..Recipe::new("yoro-medium", Method::Synthesized) },
+const CONTENDERS: [Contender; 6] = [
+    Contender::new("conventional", Method::Conventional),
+    Contender::new(MULTIVIEW, Method::Instanced),
+    Contender::new("yoro-gather", Method::Synthesized),
+    Contender { holes: HoleMethod::Rendered, ..Contender::new("yoro-holes-rendered", Method::Synthesized) },
+    Contender {
+        foveation: FoveationLevel::Medium,
+        ..Contender::new("conventional-medium", Method::Conventional)
+    },
+    Contender { foveation: FoveationLevel::Medium, ..Contender::new("yoro-medium", Method::Synthesized) },
 ];
 /// The passes of `gather`.
 const PASSES: [&str; 3] = ["gather tiles", "gather spans", "gather march"];
@@ -157,27 +159,27 @@ impl Estimator {
     fn frames(&mut self, pair: &EyePair) -> anyhow::Result<Vec<(&'static str, Frame)>> {
         let mut lamps = self.lamps(pair)?;
         let mut frames = Vec::new();
-        for recipe in RECIPES {
-            let passes = self.record(&recipe, pair)?;
-            let counted = match recipe.method {
-                Method::Synthesized => self.count(pair, recipe.foveation)?,
+        for contender in CONTENDERS {
+            let passes = self.record(&contender, pair)?;
+            let counted = match contender.method {
+                Method::Synthesized => self.count(pair, contender.foveation)?,
                 _ => Vec::new(),
             };
-            let mut frame = match recipe.name {
+            let mut frame = match contender.name {
                 MULTIVIEW => self.model.multiview(&passes, pair.size, &mut lamps)?,
                 _ => self.model.frame(&passes, pair.size, &mut lamps, laws(&counted))?,
             };
             self.add_synthesis(&mut frame, &passes, &counted)?;
-            frames.push((recipe.name, frame));
+            frames.push((contender.name, frame));
         }
         Ok(frames)
     }
 
     /// Returns the passes of a method's first frame.
-    fn record(&mut self, recipe: &Recipe, pair: &EyePair) -> anyhow::Result<Vec<RecordedPass>> {
-        let options = StereoOptions { policy: None, holes: recipe.holes, ..StereoOptions::default() };
-        let mut session = StereoSession::new(&self.gl, recipe.method.into(), &self.settings, &options)?;
-        let views = pair.stereo_views(recipe.foveation.foveation().as_ref(), Gaze::Axes(pair.axes()))?;
+    fn record(&mut self, contender: &Contender, pair: &EyePair) -> anyhow::Result<Vec<RecordedPass>> {
+        let options = StereoOptions { policy: None, holes: contender.holes, ..StereoOptions::default() };
+        let mut session = StereoSession::new(&self.gl, contender.method.into(), &self.settings, &options)?;
+        let views = pair.stereo_views(contender.foveation.foveation().as_ref(), Gaze::Axes(pair.axes()))?;
         let mut images = StereoImages::new(&self.gl)?;
         session.prepare(&mut self.scene, views.inset.is_some())?;
         self.recorder.start();

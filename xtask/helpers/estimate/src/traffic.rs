@@ -114,8 +114,8 @@ pub fn samples(pass: &RecordedPass) -> u32 {
 }
 
 /// Returns the number of fragments of a draw call: the counted ones, or else all pixels of the view. With a mask of
-/// samples, a triangle that covers the view passes fewer samples of as many pixels. It shades each pixel once, also where a
-/// pass that is declared with one sample is drawn into several.
+/// samples, a triangle that covers the view passes fewer samples of as many pixels; with several samples in a tile it
+/// passes more, but shades no pixel twice.
 pub fn fragments(pass: &RecordedPass, draw: &RecordedDraw) -> f64 {
     let passed = draw.samples_passed.filter(|_| pass.declaration.name != CARRY);
     let most = if draw.shape == Shape::Screen { pixels(draw.area) } else { f64::INFINITY };
@@ -164,9 +164,6 @@ pub mod tests {
         };
         assert_eq!(bytes("surfaces", MESH, "diffuse_map"), PIXELS + 30.0);
         assert_eq!(bytes("surfaces", MESH, "normal_map"), PIXELS);
-        let mut screen = pass("composite", "a.frag", Shape::Screen, &[]);
-        screen.draws[0].samples_passed = Some(4 * PIXELS as u64);
-        assert_eq!(fragments(&screen, &screen.draws[0]), PIXELS);
         assert_eq!(bytes("bloom", Shape::Screen, "source"), PIXELS + PIXELS);
         assert_eq!(bytes(MARCH, Shape::Screen, "depth_map"), PIXELS + 0.25 * PIXELS);
         assert_eq!(vertex_bytes(&pass("surfaces", "a.frag", MESH, &[])), 4.0 * 32.0 + 6.0 * 4.0);
@@ -176,6 +173,13 @@ pub mod tests {
         assert_eq!(once(&wide, draw), PIXELS);
         assert_eq!(once(&Image { size: [20, 8], ..wide }, draw), 4.0 * PIXELS);
         assert_eq!(once(&Image { size: [5, 2], ..wide }, draw), 10.0);
+    }
+
+    #[test]
+    fn a_triangle_that_covers_the_view_shades_each_pixel_once() {
+        let mut screen = pass("composite", "a.frag", Shape::Screen, &[]);
+        screen.draws[0].samples_passed = Some(4 * PIXELS as u64);
+        assert_eq!(fragments(&screen, &screen.draws[0]), PIXELS);
     }
 
     /// Four samples are averaged, of colours or of depth that is carried.

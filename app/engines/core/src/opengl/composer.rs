@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use yoro_gl::{Context, Destination, Format, GlError, Image, Program, ShaderSource};
+use yoro_gl::{Context, Destination, Format, GlError, Image, Pass, Program, ShaderSource};
 
 use super::pipeline::preserving;
 use super::{GlState, Options, Outputs, Part, draw_target, target_images};
@@ -80,11 +80,7 @@ impl Composer {
         let gl = &*self.gl;
         preserving(gl, &self.options, self.outputs, || {
             gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
-            let color = |size| Image { format: Format::Rgba8, size, samples: 1 };
-            let mut pass = gl.pass("compose").read("wide_map", color(composition.wide.size));
-            if let Some(inset) = composition.inset {
-                pass = pass.read("inset_map", color(inset.place.size));
-            }
+            let pass = LevelImages::declare(gl.pass("compose"), composition);
             pass.write(target_images(target, self.outputs)).run(|| {
                 images.set(self.program.bind(), composition, target.origin);
                 gl.filter_unit(INSET_UNIT);
@@ -100,6 +96,16 @@ const UNITS: [u32; 3] = [0, 1, INSET_UNIT];
 const INSET_UNIT: u32 = 2;
 
 impl LevelImages {
+    /// Declares the colours that a pass reads to compose an eye, as textures of [`Format::Rgba8`].
+    pub fn declare<'a>(pass: Pass<'a>, composition: &Composition) -> Pass<'a> {
+        let color = |size| Image { format: Format::Rgba8, size, samples: 1 };
+        let pass = pass.read("wide_map", color(composition.wide.size));
+        match composition.inset {
+            Some(inset) => pass.read("inset_map", color(inset.place.size)),
+            None => pass,
+        }
+    }
+
     /// Sets the uniforms and textures that `include/levels.glsl` declares, for a pass that composes on its way. The
     /// program must be current. Uses texture units 0 to 2. Colours must be filtered linearly, and depth not at all;
     /// `target_origin` is the corner of the eye's image in its target, which only the composer's own pass uses.

@@ -114,10 +114,9 @@ impl Storage {
         };
         let mut pass = self.gl.pass("transfer");
         for (frame, images) in frames.iter().zip(images.layers()) {
-            pass = yoro::eyes::Eye::BOTH
-                .into_iter()
-                .fold(pass, |pass, eye| pass.read("source", frame.eye(eye).color(0)));
-            pass = pass.write(images.each_ref().map(|image| image.color.image(Format::Srgb8Alpha8)));
+            for (eye, EyeTarget { color: to, .. }) in yoro::eyes::Eye::BOTH.into_iter().zip(images) {
+                pass = pass.read("source", frame.eye(eye).color(0)).write([to.image(Format::Srgb8Alpha8)]);
+            }
         }
         pass.run(|| {
             // Synthesis turns encoding off.

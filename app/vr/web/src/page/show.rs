@@ -86,13 +86,7 @@ impl Show {
         });
     }
 
-    fn draw(
-        &self,
-        program: &Program,
-        first: &Texture,
-        second: Option<(&'static str, &Texture)>,
-        to: &Destination,
-    ) {
+    fn draw(&self, program: &Program, first: &Texture, second: Option<(&str, &Texture)>, to: &Destination) {
         let rectangle = [to.origin[0], to.origin[1], to.size[0], to.size[1]].map(|n| n as f32);
         program.bind().texture_of("first", 0, first).set("rectangle", Vec4::from(rectangle));
         if let Some((name, texture)) = second {
