@@ -322,14 +322,24 @@ fn a_video_is_streamed_whole() {
     let path = dir.path().join("v.mp4");
     let (server, link) = serve_source(path.to_str().unwrap(), 30, &[], None);
     let mut page = follow(browser, server, &link);
-    let [_, right] = page.eyes([192, 128]);
+    let inner = |image: &RgbImage| imageops::crop_imm(image, 4, 4, 184, 120).to_image();
+    let mut frames = Vec::new();
     let mut reader = yoro_media::video::Reader::open(&path).unwrap();
-    let mut best = 0.0f64;
     while let Some((color, _)) = reader.read_rgbd().unwrap() {
         // The additional columns are on the left.
-        let whole = imageops::crop_imm(&color, color.width() - 192, 0, 192, 128).to_image();
-        let inner = |image: &RgbImage| imageops::crop_imm(image, 4, 4, 184, 120).to_image();
-        best = best.max(psnr(&inner(&right), &inner(&whole), Channels::Rgb).unwrap().0);
+        frames.push(inner(&imageops::crop_imm(&color, color.width() - 192, 0, 192, 128).to_image()));
+    }
+    // A stream begins with coarse pictures.
+    let mut best = 0.0f64;
+    for _ in 0..100 {
+        let [_, right] = page.eyes([192, 128]);
+        let of = |frame: &RgbImage| psnr(&inner(&right), frame, Channels::Rgb).unwrap().0;
+        best = frames.iter().map(of).fold(best, f64::max);
+        eprintln!("{best:.2} dB");
+        if best > 30.0 {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(100));
     }
     assert!(best > 30.0, "{best} dB");
     page.browser.expect_silence();
