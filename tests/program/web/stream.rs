@@ -320,7 +320,7 @@ fn a_video_is_streamed_whole() {
         "render prototype --frames 2 --size 192x128 --video v.mp4 --frame-rate 4 --quantizer 16",
     );
     let path = dir.path().join("v.mp4");
-    let (server, link) = serve_source(path.to_str().unwrap(), 30, &[], None);
+    let (server, link) = serve_source(path.to_str().unwrap(), 5, &[], None);
     let mut page = follow(browser, server, &link);
     let inner = |image: &RgbImage| imageops::crop_imm(image, 4, 4, 184, 120).to_image();
     let mut frames = Vec::new();
