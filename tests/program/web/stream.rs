@@ -336,12 +336,12 @@ fn a_video_is_streamed_whole() {
         let of = |frame: &RgbImage| psnr(&inner(&right), frame, Channels::Rgb).unwrap().0;
         best = frames.iter().map(of).fold(best, f64::max);
         eprintln!("{best:.2} dB");
-        if best > 30.0 {
+        if best > 40.0 {
             break;
         }
         std::thread::sleep(Duration::from_millis(100));
     }
-    assert!(best > 30.0, "{best} dB");
+    assert!(best > 40.0, "{best} dB");
     page.browser.expect_silence();
 }
 
