@@ -7,6 +7,7 @@ pub(crate) mod godot;
 pub(crate) mod hello_xr;
 pub mod monado;
 mod renew;
+mod results;
 
 use std::path::PathBuf;
 
@@ -32,6 +33,11 @@ pub(crate) enum Task {
         /// Scenes, --width, --height, --viewpoints, --fov-y-degrees: see `cargo xtask maintain estimate -- --help`
         #[arg(last = true, conflicts_with = "shaders")]
         frames: Vec<String>,
+    },
+    /// Measure what the documents say, in some hours, into docs/results, and write their tables
+    Results {
+        /// These suites of `yoro bench` alone [default: all, and the estimate]
+        suites: Vec<String>,
     },
     /// Renew everything that is generated: shaders for Vulkan, wgpu and three.js, the C library's header, the table of
     /// settings, and the costs of shaders
@@ -60,6 +66,7 @@ pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
             estimate::report(&estimate::Options { filter, gpus, bless }, &compilers, estimate::programs()?)?
         }
         Task::Estimate { frames, .. } => (estimate::frames(&frames)?, true),
+        Task::Results { suites } => (results::measure(&suites)?, true),
         Task::Renew => renew::renew()?,
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),

@@ -1,6 +1,6 @@
 //! Everything that is generated and committed, so that building requires no more than Rust.
 
-use anyhow::bail;
+use anyhow::ensure;
 
 use super::estimate;
 use crate::{cargo, setup};
@@ -12,7 +12,7 @@ struct Generated {
     variable: &'static str,
 }
 
-const GENERATED: [Generated; 4] = [
+const GENERATED: [Generated; 5] = [
     Generated {
         what: "what is made of the synthesis shaders",
         test: &[
@@ -42,16 +42,35 @@ const GENERATED: [Generated; 4] = [
         test: &["--package", "yoro-tests", "--test", "features"],
         variable: "YORO_BLESS",
     },
+    RESULTS,
 ];
+
+const RESULTS: Generated = Generated {
+    what: "the tables of what was measured",
+    test: &["--package", "yoro-tests", "--test", "results"],
+    variable: "YORO_BLESS",
+};
+
+impl Generated {
+    fn renew(&self) -> anyhow::Result<()> {
+        let Generated { what, test, variable } = self;
+        ensure!(
+            cargo::succeeds(&[&["test", "--quiet"], *test].concat(), &[(variable, "1")]),
+            "{what} cannot be renewed: see above"
+        );
+        Ok(())
+    }
+}
+
+/// Writes the documents' tables of what was measured.
+pub fn documents() -> anyhow::Result<()> {
+    RESULTS.renew()
+}
 
 /// Renews all of it. Returns a text on what to check next, and false if a shader has a fault.
 pub fn renew() -> anyhow::Result<(String, bool)> {
     setup::vulkan();
-    for Generated { what, test, variable } in GENERATED {
-        if !cargo::succeeds(&[&["test", "--quiet"], test].concat(), &[(variable, "1")]) {
-            bail!("{what} cannot be renewed: see above");
-        }
-    }
+    GENERATED.iter().try_for_each(Generated::renew)?;
     let (costs, passed) = match estimate::Compilers::make() {
         Ok(compilers) => {
             let options = estimate::Options { filter: None, gpus: Vec::new(), bless: true };

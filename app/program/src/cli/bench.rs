@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -40,12 +41,15 @@ pub struct BenchArgs {
     /// Timed rounds; in each, every contender renders every frame once [default: 5; quick: 2]
     #[arg(long, value_name = "N", value_parser = args::whole::<u32>(1..=1000))]
     rounds: Option<u32>,
-    /// Viewpoints of each scene, spread over its camera path [default: 3; quick: 1]
+    /// Viewpoints of each scene, spread over its camera path [default: 3; quick, gpu: 1]
     #[arg(long, value_name = "N", value_parser = args::whole::<u32>(1..=64))]
     viewpoints: Option<u32>,
     /// Size of each eye's image in pixels [default: 1024x1024; quick: 512x512]
     #[arg(long, value_name = "WxH", value_parser = eyes::parse_size)]
     size: Option<[u32; 2]>,
+    /// Begin no further setting after so many minutes; the same command goes on [default: gpu: 8]
+    #[arg(long, value_name = "N", value_parser = args::whole::<u64>(1..=100_000))]
+    minutes: Option<u64>,
     /// Scenes instead of the suite's: a built-in one, or an OBJ, glTF or GLB file; more than once for several
     #[arg(long = "scene", value_name = "NAME|FILE")]
     scenes: Vec<String>,
@@ -121,9 +125,19 @@ impl Subcommand for BenchArgs {
             path: path.as_deref(),
             patchers: PatcherOptions { model: self.model.clone() },
         };
+        let (begin, limit) = (Instant::now(), self.minutes.or(self.is_gpu().then_some(GPU_MINUTES)));
+        let limit = limit.map(|minutes| Duration::from_secs(60 * minutes));
         let bar = progress_bar(jobs.iter().map(|job| job.experiment.steps(job)).sum());
         let mut runner = Runner::new(gl, inputs, (writer, before), bar.clone());
-        for job in &jobs {
+        for (done, job) in jobs.iter().enumerate() {
+            if limit.is_some_and(|limit| begin.elapsed() >= limit) {
+                log::warn!(
+                    "{} of {} settings are left: the same command goes on",
+                    jobs.len() - done,
+                    jobs.len()
+                );
+                break;
+            }
             if let Err(error) = runner.run(job) {
                 bar.finish_and_clear();
                 if error.is::<Interrupted>() {
@@ -165,7 +179,7 @@ impl BenchArgs {
                 ..StereoOptions::of_pipeline(pipeline)
             }),
             rounds: self.rounds.unwrap_or(of(self.quick, 5, 2)),
-            viewpoints: self.viewpoints.unwrap_or(of(self.quick, 3, 1)) as usize,
+            viewpoints: self.viewpoints.unwrap_or(of(self.quick || self.is_gpu(), 3, 1)) as usize,
             scenes: self.scenes.clone(),
             contenders: self.contenders.clone(),
             seed: self.seed,
@@ -174,10 +188,18 @@ impl BenchArgs {
         }
     }
 
+    fn is_gpu(&self) -> bool {
+        self.suites.iter().any(|name| name == GPU)
+    }
+
     /// Returns the chosen experiments.
     fn experiments(&self) -> impl Iterator<Item = &'static dyn Experiment> {
         self.suites.iter().flat_map(|name| {
-            EXPERIMENTS.into_iter().filter(move |experiment| name == ALL || name == experiment.name())
+            EXPERIMENTS.into_iter().filter(move |experiment| match &**name {
+                ALL => true,
+                GPU => GPU_SUITES.contains(&experiment.name()),
+                name => name == experiment.name(),
+            })
         })
     }
 
@@ -258,11 +280,18 @@ pub(super) fn header(suites: Vec<String>, quick: bool, parameters: Vec<Parameter
 
 /// The name of all suites together.
 const ALL: &str = "all";
+/// The name of those that tell what a GPU gains, the most telling first, and the minutes that they may take.
+const GPU: &str = "gpu";
+const GPU_SUITES: [&str; 5] = ["scenes", "complexity", "reprojection", "half-rate", "foveation"];
+const GPU_MINUTES: u64 = 8;
 
 /// Accepts the names of suites, with a line of help for each.
 fn suite_names() -> PossibleValuesParser {
     let each = EXPERIMENTS.into_iter().map(|each| PossibleValue::new(each.name()).help(each.about()));
-    PossibleValuesParser::new(each.chain([PossibleValue::new(ALL).help("All of them, one after the other")]))
+    let gpu =
+        PossibleValue::new(GPU).help("What a GPU gains, in eight minutes: most of them, from one viewpoint");
+    let all = PossibleValue::new(ALL).help("All of them, one after the other");
+    PossibleValuesParser::new(each.chain([gpu, all]))
 }
 
 fn parse_contender(text: &str) -> Result<Contender, String> {

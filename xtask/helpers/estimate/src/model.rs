@@ -24,8 +24,6 @@ pub const VERTICES_ONCE: &str = "vertices once";
 pub const BYTES: &str = "bytes/";
 /// The prefix of the simulated row "16-bit depth, as a Vulkan host resolves it".
 pub const BYTES_16: &str = "bytes-16/";
-/// The prefix of bytes where `glBlitFramebuffer` averages in memory.
-pub const BYTES_BLIT: &str = "bytes-blit/";
 /// Fragments shaded per covered pixel of a surface with several samples. This is an assumption: at an edge between
 /// triangles, the pixel is shaded once for each triangle.
 const EDGE_FRAGMENTS: f64 = 1.05;
@@ -64,11 +62,7 @@ impl FrameModel {
         let mut frame = Frame::new();
         let mut add = |metric: String, value: f64| *frame.entry(metric).or_default() += value / pixels;
         let tiles = Assumed { laws, ..Assumed::default() };
-        for (prefix, assumed) in [
-            (BYTES, tiles),
-            (BYTES_16, Assumed { depth_in_16_bits: true, ..tiles }),
-            (BYTES_BLIT, Assumed { averages_in_memory: true, ..tiles }),
-        ] {
+        for (prefix, assumed) in [(BYTES, tiles), (BYTES_16, Assumed { depth_in_16_bits: true, ..tiles })] {
             for pass in passes {
                 add(format!("{prefix}{}", pass.declaration.name), assumed.bytes(pass));
                 add(format!("{prefix}{VERTICES}"), vertex_bytes(pass));

@@ -1,7 +1,7 @@
 //! The tables of the estimate.
 
 use crate::gpus::{Device, GPUS};
-use crate::model::{BYTES, BYTES_16, BYTES_BLIT, Frame, MULTIVIEW, SIZE, VERTICES, VERTICES_ONCE};
+use crate::model::{BYTES, BYTES_16, Frame, MULTIVIEW, SIZE, VERTICES, VERTICES_ONCE};
 use yoro_report::stats::{mean, unique};
 use yoro_report::{Cell, Report, Section, Table};
 
@@ -53,7 +53,10 @@ impl<'a> Entry<'a> {
             (TWO_RENDERS, _) => "two renders",
             (MULTIVIEW, true) => "multiview, vertices once",
             (MULTIVIEW, false) => "multiview, vertices twice",
-            ("conventional-medium", _) => "two renders, medium foveation",
+            ("conventional-medium", _) => "two renders, foveation `medium`",
+            ("yoro-gather", _) => "**`yoro`**",
+            ("yoro-holes-rendered", _) => "`yoro`, holes rendered",
+            ("yoro-medium", _) => "`yoro`, foveation `medium`",
             (name, _) => name,
         }
     }
@@ -159,11 +162,11 @@ fn by_scene(entry: &Entry) -> Table {
     let title = format!("{} with {}, over two renders: slots, then time", entry.title(), entry.label);
     let mut table = table(
         title,
-        &["<scene", "<glass", "two renders, bytes a pixel", "yoro, bytes", "bytes", "16-bit depth", "blits"],
+        &["<scene", "<glass", "two renders, bytes a pixel", "yoro, bytes", "bytes", "16-bit depth"],
         &[],
     );
     let [own, base] = [*entry, entry.two_renders()].map(|entry| entry.bytes(BYTES));
-    let bytes = [BYTES, BYTES_16, BYTES_BLIT].map(|prefix| entry.over_two(|entry| entry.bytes(prefix)));
+    let bytes = [BYTES, BYTES_16].map(|prefix| entry.over_two(|entry| entry.bytes(prefix)));
     let slots = GPUS.map(|gpu| entry.over_two(|entry| entry.all_slots(&gpu)));
     let times = GPUS.map(|gpu| entry.over_two(|entry| entry.times(&gpu)));
     let mut push = |scene: &str, glass: &str, of: &dyn Fn(&[f64]) -> f64| {
@@ -181,15 +184,14 @@ fn by_scene(entry: &Entry) -> Table {
     push("mean", "", &|values| average(values.iter().copied()));
     table.note = "A frame takes as long as its slots or its bytes, whichever take longer at the GPU's rates; `auto` \
                   chooses synthesis where the time is below 1. 16-bit depth is simulated: carried depth is counted with \
-                  2 bytes, as a Vulkan host resolves it. With blits in memory, glBlitFramebuffer writes and reads all \
-                  samples."
+                  2 bytes, as a Vulkan host resolves it."
         .into();
     table
 }
 
 fn ratios(entries: &[Entry]) -> Table {
     let title = "Executed slots over two renders: mean of the scenes, least and most";
-    let last = ["bytes a pixel", "bytes, ratio", "bytes, 16-bit depth", "bytes, blits in memory"];
+    let last = ["bytes a pixel", "bytes", "bytes, 16-bit depth"];
     let mut table = table(title, &["<frames", "<method"], &last);
     for entry in entries {
         let mut cells = row(entry, |gpu| match entry.method {
@@ -197,7 +199,7 @@ fn ratios(entries: &[Entry]) -> Table {
             _ => spread(&entry.over_two(|entry| entry.all_slots(gpu))),
         });
         cells.push(ours(format!("{:.0}", average(entry.bytes(BYTES)))));
-        for prefix in [BYTES, BYTES_16, BYTES_BLIT] {
+        for prefix in [BYTES, BYTES_16] {
             cells.push(ours(spread(&entry.over_two(|entry| entry.bytes(prefix)))));
         }
         table.push(cells);

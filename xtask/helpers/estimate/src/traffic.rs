@@ -3,14 +3,14 @@
 //! Passes declare which images they read, load and store. An image that is loaded or stored moves once. A triangle that
 //! covers the view reads each texel of its images once, a mesh one texel of each map of its material for each fragment; the shadow map
 //! is always read once for each fragment, and the march reads depth only where a tile has no law. Samples are averaged in
-//! the tiles, unless [`Assumed::averages_in_memory`] says otherwise.
+//! the tiles.
 
 use yoro_gl::{Format, Image, Read, Shape};
 use yoro_test_support::record::{RecordedDraw, RecordedPass};
 
 /// The texture that every draw call reads at one place per fragment.
 const SHADOW_MAP: &str = "shadow_map";
-/// The name of images that are copied or averaged.
+/// The name of images that are copied.
 const COPIED: &str = "copied";
 /// The pass that draws all samples in turn.
 const CARRY: &str = "carry";
@@ -22,8 +22,6 @@ pub const MARCH: &str = "gather march";
 /// What is assumed of the driver, and known of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Assumed {
-    /// True if `glBlitFramebuffer` averages samples in memory instead of in the tiles.
-    pub averages_in_memory: bool,
     /// True if the depth that is carried in two half floats ([`yoro_render::DepthResolve`]) takes 2 bytes instead of 4, as
     /// a Vulkan host stores it that resolves depth into 16 bits. A simulation: OpenGL ES cannot.
     pub depth_in_16_bits: bool,
@@ -56,10 +54,6 @@ impl Assumed {
     fn texels(&self, pass: &RecordedPass, Read { uniform, image }: &Read) -> f64 {
         let name = pass.declaration.name;
         match *uniform {
-            // Samples are written to be averaged, and read.
-            COPIED if image.samples > 1 => {
-                f64::from(u8::from(self.averages_in_memory)) * 2.0 * pixels(image.size)
-            }
             COPIED => pixels(image.size),
             _ if name == TILES => pixels(image.size),
             uniform => {
@@ -173,6 +167,9 @@ pub mod tests {
         assert_eq!(once(&wide, draw), PIXELS);
         assert_eq!(once(&Image { size: [20, 8], ..wide }, draw), 4.0 * PIXELS);
         assert_eq!(once(&Image { size: [5, 2], ..wide }, draw), 10.0);
+        let carried = pass("march", "a.frag", Shape::Screen, &[("depth_map", image(Format::Rg16F, 1))]);
+        let simulated = Assumed { depth_in_16_bits: true, ..Assumed::default() };
+        assert_eq!(Assumed::default().bytes(&carried) - simulated.bytes(&carried), 2.0 * PIXELS);
     }
 
     #[test]
@@ -180,19 +177,5 @@ pub mod tests {
         let mut screen = pass("composite", "a.frag", Shape::Screen, &[]);
         screen.draws[0].samples_passed = Some(4 * PIXELS as u64);
         assert_eq!(fragments(&screen, &screen.draws[0]), PIXELS);
-    }
-
-    /// Four samples are averaged, of colours or of depth that is carried.
-    #[test]
-    fn averages_in_memory_write_and_read_all_samples_that_are_averaged() {
-        let bytes = |assumed: Assumed, format| {
-            let mut resolve = pass("resolve", "a.frag", Shape::Screen, &[(COPIED, image(format, 4))]);
-            resolve.declaration.writes[0].image.format = format;
-            assumed.bytes(&resolve) / PIXELS
-        };
-        assert_eq!(bytes(Assumed::default(), Format::Rgba8), 4.0);
-        assert_eq!(bytes(Assumed { depth_in_16_bits: true, ..Assumed::default() }, Format::Rg16F), 2.0);
-        let in_memory = Assumed { averages_in_memory: true, ..Assumed::default() };
-        assert_eq!(bytes(in_memory, Format::Rgba8), 2.0 * 16.0 + 4.0);
     }
 }

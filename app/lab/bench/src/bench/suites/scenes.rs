@@ -2,7 +2,7 @@
 
 use super::super::contender::Contender;
 use super::super::record::{PassClock, metric};
-use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
+use super::super::results::{CONVENTIONAL, SettingData, Spread, SuiteData};
 use super::super::tables::{
     MetricColumn, PapersColumn, QUALITY_PLOTS, QualityPlot, cell, mark_scenes, means_table, metric_table,
     milliseconds, paper_scene, psnr_ssim, quality_of, scene_table, table_of, time_details,
@@ -54,7 +54,10 @@ fn frame_time(suite: &SuiteData) -> Section {
     section.plot(mark_scenes(plot, suite, &contenders, median, |_| Vec::new()));
     let text = |setting: &SettingData, name: &str| match name {
         CONVENTIONAL => Some(format!("{} ms", milliseconds(median(setting, name)?))),
-        name => fixed(cost(setting, name), 2),
+        name => {
+            let Spread { median, quartiles: [low, high] } = setting.cost(name)?;
+            Some(format!("{median:.2} ({low:.2}–{high:.2})"))
+        }
     };
     let papers = PapersColumn {
         title: "the paper's YORO",
@@ -65,7 +68,9 @@ fn frame_time(suite: &SuiteData) -> Section {
         mean: Some(format!("{:.2}", PAPER.average.frame_time_ratio())),
     };
     let mean = |name: &str| fixed(suite.mean_cost(name), 2);
-    section.table(scene_table(suite, title, &contenders, text, mean, Some(papers)));
+    let mut table = scene_table(suite, title, &contenders, text, mean, Some(papers));
+    table.note = "Medians of all frames, and their quartiles.".into();
+    section.table(table);
     section.table(time_details(suite, |setting, name| {
         papers_times(setting).into_iter().find(|(method, _)| *method == name).map(|(_, ratio)| ratio)
     }));
@@ -105,10 +110,17 @@ fn quality(suite: &SuiteData) -> Section {
         },
         mean: Some(format!("{:.2} / {:.4}", PAPER.average.psnr, PAPER.average.ssim)),
     };
-    let text = |setting: &SettingData, name: &str| quality_of(setting.find(name)?);
-    let mean_of = |name: &str| psnr_ssim(suite.mean(name, metric::PSNR), suite.mean(name, metric::SSIM));
-    let mut table = scene_table(suite, "PSNR in dB / SSIM", &contenders, text, mean_of, Some(papers));
-    table.note = "RGB; SSIM with a gaussian window 11x11. ∞: identical images.".into();
+    let with_flip = |quality: Option<String>, flip: Option<f64>| Some(format!("{} / {:.3}", quality?, flip?));
+    let text = |setting: &SettingData, name: &str| {
+        let measured = setting.find(name)?;
+        with_flip(quality_of(measured), measured.mean(metric::FLIP))
+    };
+    let mean_of = |name: &str| {
+        let [psnr, ssim, flip] = [metric::PSNR, metric::SSIM, metric::FLIP].map(|of| suite.mean(name, of));
+        with_flip(psnr_ssim(psnr, ssim), flip)
+    };
+    let mut table = scene_table(suite, "PSNR in dB / SSIM / FLIP", &contenders, text, mean_of, Some(papers));
+    table.note = "RGB; SSIM with a gaussian window 11x11. ∞: identical images. The paper has no FLIP.".into();
     section.table(table);
     section.table(quality_in_parts(suite, &contenders));
     section.table(metric_table(suite, "Every scene and method in full", &contenders));

@@ -1,0 +1,97 @@
+//! Measures what the documents say.
+
+use std::fs;
+use std::process::Command;
+
+use anyhow::{Context as _, bail, ensure};
+
+use super::{estimate, renew};
+use crate::cargo::{cargo, perform};
+use crate::folders::{copy, root, target_folder, write};
+
+/// A file of docs/results: `SUITE.jsonl` for the first of the arguments.
+struct Run {
+    /// The arguments of `yoro bench`.
+    arguments: &'static str,
+    /// About how long it takes on two cores without a GPU.
+    minutes: u32,
+}
+
+/// What does not fit into an hour at 1024 pixels an eye has fewer.
+const RUNS: [Run; 12] = [
+    Run { arguments: "scenes --rounds 3", minutes: 60 },
+    Run { arguments: "hard-cases --size 512x512", minutes: 2 },
+    Run { arguments: "complexity --rounds 2", minutes: 10 },
+    Run { arguments: "lights --viewpoints 1 --rounds 3", minutes: 5 },
+    Run { arguments: "resolution --rounds 2", minutes: 20 },
+    Run { arguments: "styles --viewpoints 1", minutes: 8 },
+    Run { arguments: "ipd --viewpoints 1", minutes: 8 },
+    Run { arguments: "distance --viewpoints 1", minutes: 3 },
+    Run { arguments: "patchers --viewpoints 1 --rounds 1", minutes: 5 },
+    Run { arguments: "flicker", minutes: 8 },
+    Run { arguments: "reprojection --size 512x512 --viewpoints 2", minutes: 5 },
+    Run { arguments: "half-rate --size 512x512", minutes: 10 },
+];
+const ESTIMATE: [&str; 6] = ["--width", "512", "--height", "512", "--viewpoints", "1"];
+const ESTIMATE_FILE: &str = "estimate.txt";
+
+impl Run {
+    fn suite(&self) -> &'static str {
+        self.arguments.split(' ').next().unwrap_or(self.arguments)
+    }
+}
+
+/// Measures these suites, or all and the estimate of phones, and writes the tables of the documents. What was finished
+/// on the same commit is not measured again.
+///
+/// # Errors
+/// If a suite is unknown, or a run fails. The data that were there before are then unchanged.
+pub fn measure(suites: &[String]) -> anyhow::Result<String> {
+    if let Some(unknown) = suites.iter().find(|name| RUNS.iter().all(|run| run.suite() != *name)) {
+        bail!("no document has figures of {unknown}: choose of {}", RUNS.map(|run| run.suite()).join(", "));
+    }
+    let runs =
+        || RUNS.iter().filter(|run| suites.is_empty() || suites.iter().any(|name| name == run.suite()));
+    let minutes: u32 = runs().map(|run| run.minutes).sum();
+    eprintln!(
+        "about {minutes} minutes on two cores without a GPU, on an otherwise idle machine; Ctrl-C, and later the same command goes on"
+    );
+    perform(
+        cargo().args(["build", "--release", "--package", "yoro-cli", "--features", "neural"]),
+        "yoro does not compile",
+    )?;
+    let folder = target_folder()?.with_file_name("results").join(commit()?);
+    fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+    let documents = root().join("docs/results");
+    let mut files = Vec::new();
+    for run in runs() {
+        eprintln!("$ yoro bench {}", run.arguments);
+        // It goes on with the default file of results, so that the command in the data has no path.
+        let mut command = Command::new(root().join("target/release/yoro"));
+        let status = command.current_dir(&folder).arg("bench").args(run.arguments.split(' ')).status();
+        ensure!(
+            status.context("yoro cannot be started")?.success(),
+            "{} was not measured: see above",
+            run.suite()
+        );
+        let file = folder.join("out").join(format!("bench-{}.jsonl", run.suite()));
+        files.push((file, documents.join(format!("{}.jsonl", run.suite()))));
+    }
+    for (from, to) in &files {
+        copy(from, to)?;
+    }
+    if suites.is_empty() {
+        let estimate = estimate::frames(&ESTIMATE.map(str::to_owned))?;
+        write(&documents.join(ESTIMATE_FILE), estimate)?;
+    }
+    renew::documents()?;
+    Ok("measured: look at `git diff docs`\n".into())
+}
+
+/// Returns the commit whose code is measured.
+fn commit() -> anyhow::Result<String> {
+    let output = Command::new("git").args(["describe", "--always", "--dirty"]).current_dir(root()).output();
+    let output = output.context("git cannot be started")?;
+    ensure!(output.status.success(), "this folder is no checkout of git");
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
