@@ -174,6 +174,11 @@ impl SuiteData {
         mean(self.values(contender, |measured| measured.mean(metric)))
     }
 
+    /// Returns the same over the settings with a label.
+    pub fn mean_at(&self, label: &str, contender: &str, metric: &str) -> Option<f64> {
+        mean(self.labelled(label).filter_map(|setting| setting.find(contender)?.mean(metric)))
+    }
+
     /// Returns a contender's frame time divided by that of two full renders: the geometric mean over the settings.
     pub fn mean_cost(&self, contender: &str) -> Option<f64> {
         geometric_mean(self.settings.iter().filter_map(|setting| Some(setting.cost(contender)?.median)))

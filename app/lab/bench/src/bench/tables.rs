@@ -355,43 +355,58 @@ impl Sweep {
     }
 }
 
-/// Adds plots of quality by shading style, a table with a row for each style, and one with all settings.
-pub(super) fn show_styles(section: &mut Section, suite: &SuiteData) {
+/// Returns a table of means over the scenes, with a row for each label of a sweep, which is called `what`, and a column for
+/// each contender. `text` gets the label and the contender.
+pub(super) fn label_table(
+    suite: &SuiteData,
+    title: &str,
+    what: &str,
+    contenders: &[&str],
+    text: impl Fn(&str, &str) -> Option<String>,
+) -> Table {
+    let mut table = table_of(title, &[&format!("<{what}")], contenders);
+    for label in suite.labels() {
+        let cells = contenders.iter().map(|name| cell(name, text(label, name)));
+        table.push([Cell::plain(label)].into_iter().chain(cells).collect());
+    }
+    push_refusals(&mut table, suite);
+    table.note = format!("Scenes: {}.", suite.scenes().join(", "));
+    table
+}
+
+/// Adds plots of quality by the label of a sweep, which is called `what`, a table with a row for each, and one with all
+/// settings.
+pub(super) fn show_labels(section: &mut Section, suite: &SuiteData, what: &str) {
     let contenders = suite.compared(metric::SSIM);
-    let value = |style: &str, contender: &str, name: &str| {
-        mean(suite.labelled(style).filter_map(|setting| setting.find(contender)?.mean(name)))
-    };
     for QualityPlot { metric, axis, caption } in QUALITY_PLOTS {
         let caption = format!("{caption} Means over the scenes.");
         let mut plot = Plot::rows(axis, Axis::new(axis)).caption(caption);
-        for style in suite.labels() {
+        for label in suite.labels() {
             for contender in &contenders {
-                if let Some(value) = value(style, contender, metric) {
-                    plot.mark(style, Entry::ours(*contender), value);
+                if let Some(value) = suite.mean_at(label, contender, metric) {
+                    plot.mark(label, Entry::ours(*contender), value);
                 }
             }
             let at = [metric::SSIM, metric::PSNR].iter().position(|name| *name == metric);
-            if let (Some(papers), Some(at)) = (PAPER.styles.get(style), at) {
-                plot.mark(style, papers_entry("yoro-paper"), papers[at]);
+            if let (Some(papers), Some(at)) = (PAPER.styles.get(label), at) {
+                plot.mark(label, papers_entry("yoro-paper"), papers[at]);
             }
         }
         section.plot(plot);
     }
-    let mut table = table_of("PSNR in dB / SSIM, means over the scenes", &["<style"], &contenders);
-    for style in suite.labels() {
-        let text = |name: &&str| {
-            let [psnr, ssim] = [metric::PSNR, metric::SSIM].map(|metric| value(style, name, metric));
-            cell(name, psnr_ssim(psnr, ssim))
-        };
-        table.push([Cell::plain(style)].into_iter().chain(contenders.iter().map(text)).collect());
+    let title = "PSNR in dB / SSIM, means over the scenes";
+    let mut table = label_table(suite, title, what, &contenders, |label, name| {
+        let [psnr, ssim] = [metric::PSNR, metric::SSIM].map(|metric| suite.mean_at(label, name, metric));
+        psnr_ssim(psnr, ssim)
+    });
+    let papers: Vec<_> = suite.labels().into_iter().map(|label| PAPER.styles.get(label)).collect();
+    if papers.iter().any(Option::is_some) {
+        let text = |[ssim, psnr]: &[f64; 2]| format!("{psnr:.1} / {ssim:.3}");
+        let column = papers.into_iter().map(|papers| papers.map(text));
+        add_papers_column(&mut table, "the paper's YORO", column.collect());
     }
-    push_refusals(&mut table, suite);
-    let papers = suite.labels().into_iter().map(|style| PAPER.styles.get(style));
-    let papers = papers.map(|papers| papers.map(|[ssim, psnr]| format!("{psnr:.1} / {ssim:.3}")));
-    add_papers_column(&mut table, "the paper's YORO", papers.collect());
-    table.note = format!("Scenes: {}.", suite.scenes().join(", "));
     section.table(table);
-    section.table(metric_table(suite, "Every scene and style in full", &contenders));
+    section.table(metric_table(suite, &format!("Every scene and {what} in full"), &contenders));
 }
 
 /// Adds a column with the paper's figures of a table's first rows. The last cell of the others spans it.

@@ -10,9 +10,11 @@ use image::RgbImage;
 use super::super::Experiment;
 use super::super::job::{Choices, Job};
 use super::super::record::metric;
+use super::super::results::SuiteData;
 use super::super::runner::{Round, Runner, milliseconds};
 use super::super::scenes::LazyObject;
 use super::super::subject::Subject;
+use super::super::tables::{label_table, show_labels};
 use super::super::views::{HEADSET_RATE, Motion, SPREAD};
 use super::foveation::DEGREES;
 use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, Pose, View};
@@ -21,6 +23,9 @@ use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_metrics::{Channels, EyeCamera, EyePose, SsimWindow, SubmittedEye, psnr, psnr_where, ssim};
 use yoro_render::stereo::{EyeTarget, HoleMethod, Method, MotionTarget, StereoFrame};
 use yoro_render::{DepthImage, DepthReader, PreparedScene};
+use yoro_report::Section;
+use yoro_report::stats::geometric_mean;
+use yoro_report::text::fixed;
 
 /// The ways of making the frame between. The runtime is emulated.
 const TWO_EYES: &str = "runtime-two-eyes";
@@ -98,6 +103,30 @@ impl Experiment for HalfRate {
 
     fn steps(&self, job: &Job) -> u64 {
         job.frames as u64
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "Half rate",
+            "At 72 frames a second every second one is rendered. The frame between is made by an emulated runtime, which \
+             knows the newest pose exactly, of vectors and depth at a quarter of the size; compared is the eye that is not \
+             dominant with that eye really rendered there.",
+        );
+        show_labels(&mut section, suite, "motion");
+        let title = "PSNR in dB within 3 pixels of what moves";
+        let contenders = suite.compared(metric::MOVING_PSNR);
+        section.table(label_table(suite, title, "motion", &contenders, |label, name| {
+            fixed(suite.mean_at(label, name, metric::MOVING_PSNR), 2)
+        }));
+        let title = "Time of a shown frame over two renders of all pixels in every frame";
+        let contenders = suite.compared(metric::FRAME_MS);
+        let mut table = label_table(suite, title, "motion", &contenders, |label, name| {
+            let ratios = suite.labelled(label).filter_map(|setting| Some(setting.cost(name)?.median));
+            fixed(geometric_mean(ratios), 2)
+        });
+        table.note = "What the runtime does is not counted, nor is moving the scene's vertices.".into();
+        section.table(table);
+        vec![section]
     }
 
     fn moves(&self, _job: &Job) -> bool {

@@ -8,8 +8,10 @@ use image::RgbImage;
 use super::super::Experiment;
 use super::super::job::{Choices, Job, QUICK_SCENES, VARIED_SCENES};
 use super::super::record::metric;
+use super::super::results::SuiteData;
 use super::super::runner::{Round, Runner};
 use super::super::scenes::LazyObject;
+use super::super::tables::show_labels;
 use super::super::views::{Motion, SPREAD};
 use yoro::eyes::{Eye, EyePair, GuardBand, HeadMotion, PoseWarp, View};
 use yoro::opengl::{AnyView, Gather, Options, Outputs, Source};
@@ -17,6 +19,7 @@ use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
 use yoro_render::{PreparedScene, ViewTargets};
+use yoro_report::Section;
 
 const SAME_IMAGE: &str = "same-image";
 const ROTATION: &str = "rotation";
@@ -76,6 +79,15 @@ impl Experiment for Reprojection {
 
     fn steps(&self, job: &Job) -> u64 {
         job.frames as u64
+    }
+
+    fn sections(&self, suite: &SuiteData) -> Vec<Section> {
+        let mut section = Section::new(
+            "Any view",
+            "One render shown some frames later, 72 a second, at the head's pose then, and to the other of two canted eyes.",
+        );
+        show_labels(&mut section, suite, "pose");
+        vec![section]
     }
 
     fn moves(&self, job: &Job) -> bool {

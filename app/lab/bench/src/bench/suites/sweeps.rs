@@ -2,7 +2,7 @@
 
 use super::super::contender::Contender;
 use super::super::job::Source;
-use super::super::tables::{Sweep, show_styles};
+use super::super::tables::{Sweep, show_labels};
 use super::{BOTH, FrameSuite, QUALITY};
 use yoro_assets::ShadingStyle;
 use yoro_report::paper::{DISTANCE as PAPERS_DISTANCE, PAPER};
@@ -24,7 +24,7 @@ pub(super) const STYLES: FrameSuite = FrameSuite {
             "Shading styles",
             "The same synthesis under five styles of shading. In the paper, each style is a separate scene.",
         );
-        show_styles(&mut section, suite);
+        show_labels(&mut section, suite, "style");
         vec![section]
     },
 };
