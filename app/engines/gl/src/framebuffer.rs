@@ -456,6 +456,12 @@ impl Drop for ForeignTarget {
 }
 
 impl Context {
+    /// Discards the stencil of the bound framebuffer, so that a tile-based GPU does not write it to memory.
+    pub fn discard_stencil(&self) {
+        // SAFETY: an attachment that every framebuffer may have.
+        unsafe { self.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::STENCIL_ATTACHMENT]) }
+    }
+
     /// Binds a framebuffer and sets the viewport to a rectangle, for draws that overwrite all of it in the first
     /// `colors` (at most two) colour attachments and, if `depth` is true, in depth. On OpenGL ES the rectangle's old
     /// contents are invalidated, so that a tile-based GPU need not read them. On desktop OpenGL nothing is invalidated.

@@ -186,6 +186,11 @@ impl Pass<'_> {
         self.draw_into(images, true, true)
     }
 
+    /// Declares images that the pass stores, even if the eye is finished in a tile.
+    pub fn store(self, images: impl IntoIterator<Item = Image>) -> Self {
+        self.draw_into(images, false, true)
+    }
+
     /// Declares images that the pass draws into without memory traffic of its own: they are discarded, or a pass before or
     /// after this one in the same tile has stored or stores them.
     pub fn in_tile(self, images: impl IntoIterator<Item = Image>) -> Self {

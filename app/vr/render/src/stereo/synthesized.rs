@@ -243,6 +243,7 @@ impl Rendered<'_> {
             synthesis.synthesize(self.source, warp, to)?;
             inked.inspect(|inked| inked.mark(to));
             renderer.draw_holes(&frame.scene, &view, to, samples, &source);
+            inked.inspect(|_| frame.renderer.gl.discard_stencil());
             Ok::<(), GlError>(())
         };
         let Some(inked) = inked else { return draw(to, samples, None) };

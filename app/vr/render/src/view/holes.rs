@@ -105,7 +105,7 @@ impl Renderer {
     ) {
         let variant = Resolve { samples: from.samples, ink: true, depth: true, holes: true, layer: false };
         let Some((_, program)) = self.resolve.iter().find(|(made, _)| *made == variant) else { return };
-        let [color, nearest] = [Format::Rgba8, MARKED_DEPTH].map(|format| Image {
+        let [color, nearest] = [Format::Rgba8, Format::Depth32F].map(|format| Image {
             format,
             size: view.size,
             samples: from.samples,
@@ -168,8 +168,9 @@ impl InkedHoles {
 
     /// Tells holes from the rest by alpha, which a shader can read, once an eye is synthesized into `to`.
     pub(crate) fn mark(&self, to: &Destination) {
+        // The eye was synthesized into the same tiles, and its holes are drawn in them. Then they are stored once.
         let image = |format| Image { samples: self.samples, ..to.image(format) };
-        self.gl.pass("mark").load([Format::Rgba8, MARKED_DEPTH].map(image)).run(|| {
+        self.gl.pass("mark").store([Format::Rgba8, Format::Depth32F].map(image)).run(|| {
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
             self.fill.bind();
             for (stencil, alpha) in [(0, 0.0f32), (1, 1.0)] {
