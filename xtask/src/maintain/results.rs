@@ -19,18 +19,18 @@ struct Run {
 
 /// What does not fit into an hour at 1024 pixels an eye has fewer.
 const RUNS: [Run; 12] = [
-    Run { arguments: "scenes --rounds 3", minutes: 60 },
-    Run { arguments: "hard-cases --size 512x512", minutes: 2 },
-    Run { arguments: "complexity --rounds 2", minutes: 10 },
-    Run { arguments: "lights --viewpoints 1 --rounds 3", minutes: 5 },
-    Run { arguments: "resolution --rounds 2", minutes: 20 },
-    Run { arguments: "styles --viewpoints 1", minutes: 8 },
-    Run { arguments: "ipd --viewpoints 1", minutes: 8 },
-    Run { arguments: "distance --viewpoints 1", minutes: 3 },
-    Run { arguments: "patchers --viewpoints 1 --rounds 1", minutes: 5 },
-    Run { arguments: "flicker", minutes: 8 },
-    Run { arguments: "reprojection --size 512x512 --viewpoints 2", minutes: 5 },
+    Run { arguments: "scenes --rounds 1", minutes: 25 },
+    Run { arguments: "flicker", minutes: 15 },
     Run { arguments: "half-rate --size 512x512", minutes: 10 },
+    Run { arguments: "hard-cases --size 512x512", minutes: 3 },
+    Run { arguments: "reprojection --size 512x512 --viewpoints 2", minutes: 5 },
+    Run { arguments: "patchers --size 512x512 --viewpoints 1 --rounds 1", minutes: 2 },
+    Run { arguments: "styles --size 512x512 --viewpoints 1", minutes: 2 },
+    Run { arguments: "ipd --size 512x512 --viewpoints 1", minutes: 2 },
+    Run { arguments: "distance --size 512x512", minutes: 2 },
+    Run { arguments: "lights --size 512x512 --viewpoints 1 --rounds 2", minutes: 2 },
+    Run { arguments: "complexity --size 512x512 --rounds 2", minutes: 5 },
+    Run { arguments: "resolution --rounds 2 --scene prototype", minutes: 4 },
 ];
 const ESTIMATE: [&str; 6] = ["--width", "512", "--height", "512", "--viewpoints", "1"];
 const ESTIMATE_FILE: &str = "estimate.txt";
