@@ -1,7 +1,7 @@
 //! Tables and plots that several experiments share, and figures as text.
 
 use super::record::metric;
-use super::results::{CONVENTIONAL, MONO, Measured, SettingData, SuiteData};
+use super::results::{CONVENTIONAL, MONO, Measured, SettingData, Spread, SuiteData};
 use yoro_report::paper::{self, PAPER, PaperScene};
 use yoro_report::stats::{mean, percentile, unique};
 use yoro_report::text::{fixed, short_count};
@@ -41,6 +41,15 @@ pub(super) fn psnr_ssim(psnr: Option<f64>, ssim: Option<f64>) -> Option<String> 
     // Identical images have no finite PSNR.
     let psnr = fixed(psnr, 2).unwrap_or_else(|| "∞".into());
     Some(format!("{psnr} / {:.4}", ssim?))
+}
+
+/// What the figures of [`cost_of`] are.
+pub(super) const QUARTILES: &str = "Medians of all frames, and their quartiles.";
+
+/// Returns a contender's frame time over that of two full renders.
+pub(super) fn cost_of(setting: &SettingData, name: &str) -> Option<String> {
+    let Spread { median, quartiles: [low, high] } = setting.cost(name)?;
+    Some(format!("{median:.2} ({low:.2}–{high:.2})"))
 }
 
 /// Returns PSNR and SSIM of a contender.

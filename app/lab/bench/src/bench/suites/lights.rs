@@ -3,7 +3,7 @@
 use super::super::contender::Contender;
 use super::super::record::metric;
 use super::super::results::{CONVENTIONAL, SettingData};
-use super::super::tables::{PapersColumn, mark_scenes, scene_table, time_details};
+use super::super::tables::{PapersColumn, QUARTILES, cost_of, mark_scenes, scene_table, time_details};
 use super::{COST, FrameSuite};
 use yoro_report::paper::{self, PAPER};
 use yoro_report::text::fixed;
@@ -42,14 +42,11 @@ pub(super) const LIGHTS: FrameSuite = FrameSuite {
             of_scene: |_| None,
             mean: Some(means.collect::<Vec<_>>().join(", ")),
         };
-        section.table(scene_table(
-            suite,
-            title,
-            &suite.measured(metric::FRAME_MS),
-            |setting, name| fixed(cost(setting, name), 2),
-            |name| fixed(suite.mean_cost(name), 2),
-            Some(column),
-        ));
+        let contenders = suite.measured(metric::FRAME_MS);
+        let mean = |name: &str| fixed(suite.mean_cost(name), 2);
+        let mut table = scene_table(suite, title, &contenders, cost_of, mean, Some(column));
+        table.note = QUARTILES.into();
+        section.table(table);
         section.table(time_details(suite, |_, _| None));
         vec![section]
     },

@@ -2,10 +2,11 @@
 
 use super::super::contender::Contender;
 use super::super::record::{PassClock, metric};
-use super::super::results::{CONVENTIONAL, SettingData, Spread, SuiteData};
+use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
 use super::super::tables::{
-    MetricColumn, PapersColumn, QUALITY_PLOTS, QualityPlot, cell, mark_scenes, means_table, metric_table,
-    milliseconds, paper_scene, psnr_ssim, quality_of, scene_table, table_of, time_details,
+    MetricColumn, PapersColumn, QUALITY_PLOTS, QUARTILES, QualityPlot, cell, cost_of, mark_scenes,
+    means_table, metric_table, milliseconds, paper_scene, psnr_ssim, quality_of, scene_table, table_of,
+    time_details,
 };
 use super::{BOTH_WITH_PICTURES, FrameSuite};
 use yoro_report::paper::{PAPER, SYSTEMS};
@@ -54,10 +55,7 @@ fn frame_time(suite: &SuiteData) -> Section {
     section.plot(mark_scenes(plot, suite, &contenders, median, |_| Vec::new()));
     let text = |setting: &SettingData, name: &str| match name {
         CONVENTIONAL => Some(format!("{} ms", milliseconds(median(setting, name)?))),
-        name => {
-            let Spread { median, quartiles: [low, high] } = setting.cost(name)?;
-            Some(format!("{median:.2} ({low:.2}–{high:.2})"))
-        }
+        name => cost_of(setting, name),
     };
     let papers = PapersColumn {
         title: "the paper's YORO",
@@ -69,7 +67,7 @@ fn frame_time(suite: &SuiteData) -> Section {
     };
     let mean = |name: &str| fixed(suite.mean_cost(name), 2);
     let mut table = scene_table(suite, title, &contenders, text, mean, Some(papers));
-    table.note = "Medians of all frames, and their quartiles.".into();
+    table.note = QUARTILES.into();
     section.table(table);
     section.table(time_details(suite, |setting, name| {
         papers_times(setting).into_iter().find(|(method, _)| *method == name).map(|(_, ratio)| ratio)
