@@ -36,8 +36,8 @@ const LINES: [(&str, f64); 10] = [
     ("tests", 23.8),
     ("xtask", 10.7),
 ];
-/// Thousands of words that all documents may have.
-const WORDS: f64 = 34.0;
+/// Thousands of words that all documents may have, without the tables that are made of docs/results, which nobody writes.
+const WORDS: f64 = 33.4;
 
 /// A package, and what it compiles of this repository's packages, as folders.
 struct Package {
@@ -126,6 +126,14 @@ fn files(folder: &str, ending: &str) -> Vec<String> {
     names.filter_map(|name| std::fs::read_to_string(root().join(name)).ok()).collect()
 }
 
+/// Returns the number of words of a document outside of the tables of data.
+fn written(document: &str) -> usize {
+    let mut parts = document.split("<!-- table ");
+    let first = parts.next().into_iter();
+    let after = parts.map(|part| part.split_once("<!-- end -->").map_or(part, |(_, after)| after));
+    first.chain(after).map(|part| part.split_whitespace().count()).sum()
+}
+
 #[test]
 fn the_house_keeps_its_budget() {
     let thousands = |count: usize| count as f64 / 1e3;
@@ -137,7 +145,7 @@ fn the_house_keeps_its_budget() {
             over.push(format!("{floor} has {lines:.1} thousand lines of Rust, and {most:.1} is its budget"));
         }
     }
-    let words = thousands(files(".", "md").iter().map(|file| file.split_whitespace().count()).sum());
+    let words = thousands(files(".", "md").iter().map(|file| written(file)).sum());
     if words > WORDS {
         over.push(format!("the documents have {words:.1} thousand words, and {WORDS:.1} is their budget"));
     }

@@ -36,7 +36,7 @@ pub(crate) enum Task {
     },
     /// Measure what the documents say, in some hours, into docs/results, and write their tables
     Results {
-        /// These suites of `yoro bench` alone [default: all, and the estimate]
+        /// These suites of `yoro bench`, or the estimate, alone [default: all]
         suites: Vec<String>,
     },
     /// Renew everything that is generated: shaders for Vulkan, wgpu and three.js, the C library's header, the table of

@@ -32,8 +32,9 @@ const RUNS: [Run; 12] = [
     Run { arguments: "complexity --size 512x512 --rounds 2", minutes: 5 },
     Run { arguments: "resolution --rounds 2 --scene prototype", minutes: 4 },
 ];
-const ESTIMATE: [&str; 6] = ["--width", "512", "--height", "512", "--viewpoints", "1"];
-const ESTIMATE_FILE: &str = "estimate.txt";
+/// The name of the estimate of phones, whose text is kept, and its arguments.
+const ESTIMATE: (&str, [&str; 6]) = ("estimate", ["--width", "512", "--height", "512", "--viewpoints", "1"]);
+const ESTIMATE_MINUTES: u32 = 8;
 
 impl Run {
     fn suite(&self) -> &'static str {
@@ -47,27 +48,30 @@ impl Run {
 /// # Errors
 /// If a suite is unknown, or a run fails. The data that were there before are then unchanged.
 pub fn measure(suites: &[String]) -> anyhow::Result<String> {
-    if let Some(unknown) = suites.iter().find(|name| RUNS.iter().all(|run| run.suite() != *name)) {
-        bail!("no document has figures of {unknown}: choose of {}", RUNS.map(|run| run.suite()).join(", "));
+    let known = || RUNS.iter().map(Run::suite).chain([ESTIMATE.0]);
+    if let Some(unknown) = suites.iter().find(|suite| known().all(|name| name != *suite)) {
+        bail!("no document has figures of {unknown}: choose of {}", known().collect::<Vec<_>>().join(", "));
     }
-    let runs =
-        || RUNS.iter().filter(|run| suites.is_empty() || suites.iter().any(|name| name == run.suite()));
-    let minutes: u32 = runs().map(|run| run.minutes).sum();
+    let is_wanted = |name: &str| suites.is_empty() || suites.iter().any(|suite| suite == name);
+    let runs = || RUNS.iter().filter(|run| is_wanted(run.suite()));
+    let minutes = runs().map(|run| run.minutes).chain(is_wanted(ESTIMATE.0).then_some(ESTIMATE_MINUTES));
     eprintln!(
-        "about {minutes} minutes on two cores without a GPU, on an otherwise idle machine; Ctrl-C, and later the same command goes on"
+        "about {} minutes on two cores without a GPU, which should be idle otherwise; after Ctrl-C the same command goes on",
+        minutes.sum::<u32>()
     );
     perform(
         cargo().args(["build", "--release", "--package", "yoro-cli", "--features", "neural"]),
         "yoro does not compile",
     )?;
-    let folder = target_folder()?.with_file_name("results").join(commit()?);
+    let target = target_folder()?;
+    let folder = target.join("results").join(commit()?);
     fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
     let documents = root().join("docs/results");
     let mut files = Vec::new();
     for run in runs() {
         eprintln!("$ yoro bench {}", run.arguments);
         // It goes on with the default file of results, so that the command in the data has no path.
-        let mut command = Command::new(root().join("target/release/yoro"));
+        let mut command = Command::new(target.join("release/yoro"));
         let status = command.current_dir(&folder).arg("bench").args(run.arguments.split(' ')).status();
         ensure!(
             status.context("yoro cannot be started")?.success(),
@@ -80,9 +84,9 @@ pub fn measure(suites: &[String]) -> anyhow::Result<String> {
     for (from, to) in &files {
         copy(from, to)?;
     }
-    if suites.is_empty() {
-        let estimate = estimate::frames(&ESTIMATE.map(str::to_owned))?;
-        write(&documents.join(ESTIMATE_FILE), estimate)?;
+    if is_wanted(ESTIMATE.0) {
+        let (name, arguments) = ESTIMATE;
+        write(&documents.join(name).with_extension("txt"), estimate::frames(&arguments.map(str::to_owned))?)?;
     }
     renew::documents()?;
     Ok("measured: look at `git diff docs`\n".into())
