@@ -1,36 +1,48 @@
-//! The tables of measurements in the documents are made of the data in docs/results, by the report's own code.
+//! The tables and plots of measurements in the documents are made of the data in docs/results, by the report's own code.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use yoro_bench::bench::{BenchReport, Results};
-use yoro_report::{Block, Section, Text, Tone};
+use yoro_report::{Block, Report, Text, Tone};
 
-const DOCUMENTS: [&str; 3] = ["docs/results.md", "docs/performance.md", "docs/streaming.md"];
-/// The lines around a table: `<!-- table FILE: TITLE -->` with a file in docs/results, and this one.
-const BEGIN: &str = "<!-- table ";
-const END: &str = "<!-- end -->";
+const DOCUMENTS: [&str; 2] = ["docs/results.md", "docs/performance.md"];
+/// The lines around a table: `<!-- table FILE: TITLE -->` with a file in docs/results, and the second one.
+const TABLE: [&str; 2] = ["<!-- table ", "<!-- end -->"];
+/// The line before a picture of a plot: `<!-- plot FILE: TITLE -->`.
+const PLOT: &str = "<!-- plot ";
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
 }
 
+fn report(file: &str) -> Report {
+    let path = root().join("docs/results").join(file);
+    BenchReport::new(vec![Results::read(&path).unwrap()]).unwrap().report()
+}
+
 /// Returns a table of a file of results, and how and where it was measured.
 fn table(file: &str, title: &str) -> String {
-    let path = root().join("docs/results").join(file);
-    if path.extension().is_some_and(|extension| extension == "txt") {
-        return printed(&fs::read_to_string(path).unwrap(), title);
+    if file.ends_with(".txt") {
+        return printed(&fs::read_to_string(root().join("docs/results").join(file)).unwrap(), title);
     }
-    let report = BenchReport::new(vec![Results::read(&path).unwrap()]).unwrap().report();
-    let has_table = |section: &&Section| section.tables().any(|table| table.title == title);
-    let section = report.sections.iter().find(has_table).unwrap_or_else(|| panic!("{file} lacks {title}"));
-    let table = section.tables().find(|table| table.title == title).unwrap();
+    let sections = report(file).sections;
+    let tables = sections.iter().flat_map(|section| section.tables().map(move |table| (section, table)));
+    let found = tables.into_iter().find(|(_, table)| table.title == title);
+    let (section, table) = found.unwrap_or_else(|| panic!("{file} lacks {title}"));
     let place = section.blocks.iter().rev().find_map(|block| match block {
         Block::Text(Text { text, tone: Tone::Quiet }) => Some(text),
         _ => None,
     });
     format!("{}\n{}\n", table.markdown(), place.expect("where it was measured"))
+}
+
+/// Returns the drawing of a plot of a file of results.
+fn plot(file: &str, title: &str) -> String {
+    let sections = report(file).sections;
+    let mut plots = sections.iter().flat_map(|section| section.plots());
+    plots.find(|plot| plot.title == title).unwrap_or_else(|| panic!("{file} lacks {title}")).to_svg().unwrap()
 }
 
 /// Returns a table of a report that was kept as Markdown.
@@ -41,33 +53,44 @@ fn printed(report: &str, title: &str) -> String {
     format!("{}\n", rest[..end].trim_end())
 }
 
-/// With YORO_BLESS in the environment, the tables are rewritten.
+/// Writes a file if YORO_BLESS is in the environment, and otherwise compares it.
+fn check(path: &Path, expected: &str) {
+    if std::env::var_os("YORO_BLESS").is_some() {
+        fs::write(path, expected).unwrap();
+    } else {
+        let same = fs::read_to_string(path).is_ok_and(|present| present == expected);
+        assert!(same, "{}: `cargo xtask maintain renew` makes it of the data", path.display());
+    }
+}
+
 #[test]
-fn the_documents_have_the_tables_of_the_data() {
+fn the_documents_have_the_tables_and_plots_of_the_data() {
     let mut used = BTreeSet::new();
     for document in DOCUMENTS {
         let path = root().join(document);
         let text = fs::read_to_string(&path).unwrap();
         let mut expected = String::new();
         let mut rest = text.as_str();
-        while let Some(at) = rest.find(BEGIN) {
+        while let Some(at) = rest.find(TABLE[0]).into_iter().chain(rest.find(PLOT)).min() {
             let line = rest[at..].find('\n').unwrap() + at + 1;
-            let mark = rest[at..line].trim().trim_start_matches(BEGIN).trim_end_matches(" -->");
-            let (file, title) = mark.split_once(": ").unwrap();
-            let end = line + rest[line..].find(END).unwrap_or_else(|| panic!("{mark} has no end"));
-            expected += &format!("{}\n{}\n", &rest[..line], table(file, title));
+            let (is_table, mark) = match rest[at..line].strip_prefix(TABLE[0]) {
+                Some(mark) => (true, mark),
+                None => (false, &rest[at + PLOT.len()..line]),
+            };
+            let (file, title) = mark.trim().trim_end_matches(" -->").split_once(": ").unwrap();
             used.insert(file.to_owned());
-            rest = &rest[end..];
+            expected += &rest[..line];
+            rest = &rest[line..];
+            if is_table {
+                expected += &format!("{}\n", table(file, title));
+                rest = &rest[rest.find(TABLE[1]).unwrap_or_else(|| panic!("{title} has no end"))..];
+            } else {
+                let (_, picture) = rest.split_once("](").unwrap();
+                let picture = picture.split(')').next().unwrap();
+                check(&path.with_file_name(picture), &plot(file, title));
+            }
         }
-        expected += rest;
-        if std::env::var_os("YORO_BLESS").is_some() {
-            fs::write(path, expected).unwrap();
-        } else {
-            assert!(
-                text == expected,
-                "{document}: `cargo xtask maintain renew` writes the tables of the data"
-            );
-        }
+        check(&path, &(expected + rest));
     }
     let files = fs::read_dir(root().join("docs/results")).unwrap();
     let all = files.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
