@@ -300,9 +300,6 @@ fn every_section_has_its_place_and_no_row_is_silently_empty() {
                 !["Time of each pass", "Quality of both eyes"].iter().any(|t| table.title.starts_with(t));
             assert!(named || !with_reasons, "{} says nothing of multiview", table.title);
         }
-        for plot in section.plots() {
-            assert!(plot.to_svg().unwrap().contains("<text"), "{}", plot.title);
-        }
     }
     let plots = |heading: &str| -> Vec<&str> {
         let section = report.sections.iter().find(|section| section.heading == heading).unwrap();

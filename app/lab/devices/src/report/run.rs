@@ -138,14 +138,6 @@ pub struct Exclusion {
     pub reason: String,
 }
 
-/// Values over time for plots, as pairs of seconds and value.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Traces {
-    pub power: Vec<(f64, f64)>,
-    pub fps: Vec<(f64, f64)>,
-    pub temperature: Vec<(f64, f64)>,
-}
-
 /// The figures of one run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Run {
@@ -173,8 +165,6 @@ pub struct Run {
     pub faults: Vec<Fault>,
     /// Reasons for which the run, or only its power, is excluded.
     pub exclusions: Vec<Exclusion>,
-    #[serde(skip)]
-    pub(super) traces: Traces,
 }
 
 impl Run {
@@ -219,11 +209,6 @@ impl Run {
             by_level: by_level(&series(|s| s.level_percent), info.device.capacity_mah),
             faults: info.faults.clone(),
             exclusions: Vec::new(),
-            traces: Traces {
-                power: thinned(&power, longest_step),
-                fps: thinned(&fps, longest_step),
-                temperature: thinned(&temperature, longest_step),
-            },
         };
         if let Some((name, reason)) = run.exclusion_reason(capture) {
             run.leave_out(name, reason);
@@ -437,24 +422,4 @@ fn mean_over_frames(samples: &[&Sample], value: fn(&Sample) -> Option<f64>) -> O
     let pairs = samples.iter().filter_map(|sample| Some((sample.fps?, value(sample)?)));
     let (frames, sum) = pairs.fold((0.0, 0.0), |(frames, sum), (fps, v)| (frames + fps, sum + fps * v));
     (frames > 0.0).then(|| sum / frames)
-}
-
-/// Maximum number of points in a curve. More would not be visible in a figure.
-const TRACE_POINTS: usize = 240;
-
-/// Returns means of neighbouring points, with a point that is not finite at each gap.
-fn thinned(series: &[(f64, f64)], longest: f64) -> Vec<(f64, f64)> {
-    let width = series.len().div_ceil(TRACE_POINTS).max(1);
-    let mut points = Vec::new();
-    for piece in series.chunk_by(|a, b| b.0 - a.0 <= longest) {
-        if !points.is_empty() {
-            points.push((f64::NAN, f64::NAN));
-        }
-        for chunk in piece.chunks(width) {
-            let n = chunk.len() as f64;
-            let sum = chunk.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
-            points.push((sum.0 / n, sum.1 / n));
-        }
-    }
-    points
 }

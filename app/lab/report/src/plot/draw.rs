@@ -127,13 +127,12 @@ impl plotters::coord::ranged1d::ValueFormatter<f64> for Scaled {
 }
 
 /// Draws a plot: axes, then a layer for each entry of the legend, so that the page can hide one.
-pub(super) fn draw(plot: &Plot, with_legend: bool) -> DrawingResult<Drawing> {
+pub(super) fn draw(plot: &Plot) -> DrawingResult<Drawing> {
     let legend = plot.legend();
     let mut points = Vec::new();
     let mut body = layer(plot, |root, chart| {
         root.fill(&rgb(palette::BACKGROUND.0))?;
-        draw_axes(plot, chart)?;
-        if with_legend { draw_legend(&legend, chart) } else { Ok(()) }
+        draw_axes(plot, chart)
     })?;
     // The first entry comes last, on top of others with equal figures.
     for (i, entry) in legend.iter().enumerate().rev() {
@@ -249,24 +248,6 @@ fn draw_axes(plot: &Plot, chart: &mut Chart) -> DrawingResult<()> {
     Ok(())
 }
 
-/// Draws the legend of a document's picture inside the plot.
-fn draw_legend(legend: &[&Entry], chart: &mut Chart) -> DrawingResult<()> {
-    for entry in legend {
-        let (look, papers) = (palette::of(&entry.method), entry.papers);
-        chart
-            .draw_series(std::iter::empty::<PathElement<(f64, f64)>>())?
-            .label(&entry.label)
-            .legend(move |(x, y)| Polygon::new(outline(&look, (x + EM, y)), style(&look, papers)));
-    }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .legend_area_size(2 * EM)
-        .background_style(rgb(palette::BACKGROUND.0).filled())
-        .label_font(text())
-        .draw()
-}
-
 /// Draws the points of a series, and returns those that are finite with their places in SVG units.
 fn draw_points<'p>(
     plot: &Plot,
@@ -282,18 +263,8 @@ fn draw_points<'p>(
         (x, y + offset)
     };
     let finite: Vec<_> = points.iter().filter(|p| p.is_finite()).map(|p| (p, at(p.x, p.y))).collect();
-    match plot.style {
-        Style::Traces => {
-            for piece in points.split(|point| !point.is_finite()) {
-                let piece: Vec<_> = piece.iter().map(|point| at(point.x, point.y)).collect();
-                root.draw(&PathElement::new(piece, rgb(look.light).stroke_width(2)))?;
-            }
-            return Ok(finite.into_iter());
-        }
-        Style::Curves if finite.len() > 1 => {
-            draw_stroke(root, finite.iter().map(|(_, at)| *at).collect(), &look, entry.papers)?;
-        }
-        Style::Curves | Style::Points => {}
+    if plot.style == Style::Curves && finite.len() > 1 {
+        draw_stroke(root, finite.iter().map(|(_, at)| *at).collect(), &look, entry.papers)?;
     }
     for (point, place) in &finite {
         if let Some(interval) = point.interval {
@@ -363,9 +334,7 @@ fn swatch(plot: &Plot, entry: &Entry) -> DrawingResult<String> {
         if plot.style != Style::Points || has_intervals(plot) {
             draw_stroke(&root, vec![(0, EM / 2), (2 * EM, EM / 2)], &look, entry.papers)?;
         }
-        if plot.style != Style::Traces {
-            draw_mark(&root, (EM, EM / 2), &look, entry.papers)?;
-        }
+        draw_mark(&root, (EM, EM / 2), &look, entry.papers)?;
         root.present()?;
     }
     Ok(svg)

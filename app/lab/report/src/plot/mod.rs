@@ -7,7 +7,6 @@ mod tests;
 use serde_json::{Value, json};
 
 use crate::Interval;
-use crate::palette::css_rules;
 use crate::stats::unique;
 
 /// The error when a plot cannot be drawn.
@@ -41,8 +40,6 @@ enum Style {
     Curves,
     /// A mark for each point.
     Points,
-    /// A thin line without marks, interrupted where a value is not finite.
-    Traces,
 }
 
 /// An axis.
@@ -150,12 +147,6 @@ impl Plot {
         Plot::new(title, Style::Points, x, y)
     }
 
-    /// Returns a plot without values over time that lie close together: thin lines, interrupted where a value is not
-    /// finite. [`Plot::curve`] adds values.
-    pub fn traces(title: impl Into<String>, x: Axis, y: Axis) -> Plot {
-        Plot::new(title, Style::Traces, x, y)
-    }
-
     /// Returns a plot without values that has a row for each category. [`Plot::mark`] adds values.
     pub fn rows(title: impl Into<String>, value: Axis) -> Plot {
         Plot::new(title, Style::Points, value, Axis::default())
@@ -203,24 +194,13 @@ impl Plot {
         entries
     }
 
-    /// Returns the plot with its legend as an SVG document, light or dark as its reader prefers.
-    ///
-    /// # Errors
-    /// [`PlotError`] if plotters refuses.
-    pub fn to_svg(&self) -> Result<String, PlotError> {
-        let drawing = self.draw(true)?;
-        let style = format!("<style>@media (prefers-color-scheme: dark) {{{}}}</style>", css_rules());
-        Ok(drawing.svg.replacen('>', &format!(">{style}"), 1))
-    }
-
-    fn draw(&self, with_legend: bool) -> Result<draw::Drawing, PlotError> {
-        draw::draw(self, with_legend)
-            .map_err(|error| PlotError { title: self.title.clone(), what: error.to_string() })
+    fn draw(&self) -> Result<draw::Drawing, PlotError> {
+        draw::draw(self).map_err(|error| PlotError { title: self.title.clone(), what: error.to_string() })
     }
 
     /// Returns what the page's template and script need: drawing, legend, and the points with their places.
     pub(crate) fn to_page(&self) -> Result<Value, PlotError> {
-        let drawing = self.draw(false)?;
+        let drawing = self.draw()?;
         let legend = self.legend();
         let entries = legend.iter().zip(&drawing.swatches);
         let entries = entries.map(|(entry, swatch)| json!({ "label": entry.label, "swatch": swatch }));

@@ -7,10 +7,9 @@ mod session;
 mod source;
 mod web_server;
 mod web_socket;
-mod web_transport;
 
 use std::io::{self, IsTerminal as _, Write as _};
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -31,7 +30,7 @@ use crate::cli::args::{self, GlArgs};
 use crate::cli::eyes;
 use crate::cli::settings::{Renderer, SettingOptions};
 use yoro_gl::Context;
-use yoro_media::video::{FfmpegEncoder, LiveEncoder, LiveEncoderKind};
+use yoro_media::video::LiveEncoder;
 use yoro_render::PreparedScene;
 use yoro_stream::{FrameRenderer, FromServer, Mode, Token};
 
@@ -51,9 +50,6 @@ pub struct ServeArgs {
     /// H.264's quantizer, 12 (best) to 44; it grows where the connection is too slow
     #[arg(long, default_value_t = 24, value_name = "QP", value_parser = args::whole::<u8>(12..=44))]
     quantizer: u8,
-    /// The video encoder
-    #[arg(long, value_enum, default_value = "auto")]
-    encoder: EncoderArg,
     /// The largest number of frames per second
     #[arg(long, default_value_t = 60, value_name = "HZ", value_parser = args::whole::<u16>(1..=240))]
     frame_rate: u16,
@@ -65,9 +61,6 @@ pub struct ServeArgs {
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true, value_parser = address)]
     #[expect(clippy::option_option, reason = "clap's form of an option whose value may be left out")]
     lan: Option<Option<IpAddr>>,
-    /// Serve a page of this origin (https://HOST), too, to which the program prints a link
-    #[arg(long, value_name = "ORIGIN", requires = "lan", value_parser = access::origin)]
-    allow_origin: Option<String>,
     /// The port; 0 for a free one
     #[arg(long, default_value_t = 8080, value_parser = args::whole::<u16>(0..=u16::MAX), value_name = "N")]
     port: u16,
@@ -90,32 +83,6 @@ enum ModeArg {
     EyesDepth,
 }
 
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum EncoderArg {
-    /// A graphics card, through ffmpeg, where that works; otherwise openh264
-    Auto,
-    /// The built-in encoder
-    Openh264,
-    /// NVIDIA's NVENC, through ffmpeg
-    Nvenc,
-    /// VA-API (Intel, AMD), through ffmpeg
-    Vaapi,
-    /// x264 on the CPU, through ffmpeg
-    X264,
-}
-
-impl EncoderArg {
-    fn kind(self) -> LiveEncoderKind {
-        match self {
-            EncoderArg::Auto => LiveEncoderKind::Auto,
-            EncoderArg::Openh264 => LiveEncoderKind::OpenH264,
-            EncoderArg::Nvenc => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Nvenc),
-            EncoderArg::Vaapi => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Vaapi),
-            EncoderArg::X264 => LiveEncoderKind::Ffmpeg(FfmpegEncoder::X264),
-        }
-    }
-}
-
 /// The longest side of an eye in pixels if three parts are side by side: hardware decodes at most 4096 columns.
 const MAX_SIDE_OF_THREE_PARTS: u16 = 1024;
 
@@ -130,8 +97,7 @@ impl Subcommand for ServeArgs {
             "{} has no page: run cargo xtask web, or name its folder with --page",
             folder.display()
         );
-        let encoder = LiveEncoder::new(self.encoder.kind(), self.frame_rate.into())
-            .context("choose another encoder with --encoder")?;
+        let encoder = LiveEncoder::new(self.frame_rate.into())?;
         let lan = self.lan.map(Lan::new).transpose()?;
         // The context is declared first, so that it is dropped after everything created in it.
         let headless;
@@ -166,52 +132,24 @@ impl Subcommand for ServeArgs {
         };
         let hosts: Vec<String> = hosts.iter().map(|host| access::host(scheme, host).to_owned()).collect();
         let token_text = format!("{:032x}", u128::from_be_bytes(token));
-        let stream = match &lan {
-            Some(lan) => format!("{},{},{token_text}", hosts[0], lan.quic_hash),
-            None => token_text,
-        };
-        let own = format!("{scheme}://{}", hosts[0]);
-        let pages = std::iter::once(&own).chain(&self.allow_origin);
-        let links: Vec<String> =
-            pages.map(|page| format!("{page}/#stream={stream}&display=side-by-side")).collect();
-        let quic = match &lan {
-            Some(lan) => {
-                let place = SocketAddr::new(lan.address, port);
-                let socket = UdpSocket::bind(place).map_err(|error| refusal(place, &error))?;
-                Some((socket, lan.quic.clone()))
-            }
-            None => None,
-        };
-        announce(&links, port, lan.as_ref(), server.encoder.name())?;
-        let access = Access { token, scheme, hosts, origin: self.allow_origin.clone() };
+        let link = format!("{scheme}://{}/#stream={token_text}&display=side-by-side", hosts[0]);
+        announce(&link, port, lan.as_ref())?;
+        let access = Access { token, scheme, hosts };
         let (lobby, clients) = Lobby::new(access, &welcome);
         let tls = lan.map(|lan| lan.tls.into());
-        connect(listener, quic, WebServer { lobby, folder, tls })?;
+        connect(listener, WebServer { lobby, folder, tls })?;
         server.serve(&clients)
     }
 }
 
-/// Serves all connections on a thread of their own. By UDP there is WebTransport, if that has a configuration.
-fn connect(
-    listener: TcpListener,
-    quic: Option<(UdpSocket, rustls::ServerConfig)>,
-    server: WebServer,
-) -> anyhow::Result<()> {
+/// Serves all connections on a thread of their own.
+fn connect(listener: TcpListener, server: WebServer) -> anyhow::Result<()> {
     let runtime = runtime::Builder::new_current_thread().enable_all().build()?;
     let inside = runtime.enter();
     listener.set_nonblocking(true)?;
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    let endpoint = quic.map(|(socket, tls)| web_transport::listen(socket, tls)).transpose()?;
     drop(inside);
-    thread::spawn(move || {
-        runtime.block_on(async {
-            let lobby = server.lobby.clone();
-            if let Some(endpoint) = endpoint {
-                tokio::spawn(async move { web_transport::accept(&endpoint, &lobby).await });
-            }
-            Arc::new(server).accept(listener).await;
-        });
-    });
+    thread::spawn(move || runtime.block_on(Arc::new(server).accept(listener)));
     Ok(())
 }
 
@@ -270,16 +208,14 @@ fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServ
     Ok((Source::Scene { prepared, renderer }, FromServer::Welcome(home)))
 }
 
-/// Prints where the stream can be seen, and which encoder is used.
-fn announce(links: &[String], port: u16, lan: Option<&Lan>, encoder: &str) -> anyhow::Result<()> {
-    for link in links {
-        println!("open {link}");
-        if lan.is_some() && io::stdout().is_terminal() {
-            print!("{}", lan::code(link)?);
-        }
-    }
+/// Prints where the stream can be seen.
+fn announce(link: &str, port: u16, lan: Option<&Lan>) -> anyhow::Result<()> {
+    println!("open {link}");
     match lan {
         Some(lan) => {
+            if io::stdout().is_terminal() {
+                print!("{}", lan::code(link)?);
+            }
             println!(
                 "a browser that has not been here warns that it does not know the certificate, with SHA-256\n{}\n\
                  docs/streaming.md says what to do then, and what it protects from",
@@ -290,6 +226,6 @@ fn announce(links: &[String], port: u16, lan: Option<&Lan>, encoder: &str) -> an
             "on a phone by cable: adb reverse tcp:{port} tcp:{port}, then the same address there; by Wi-Fi: --lan"
         ),
     }
-    println!("{encoder} encodes, until Ctrl-C");
+    println!("it is served until Ctrl-C");
     Ok(io::stdout().flush()?)
 }

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use super::run::LEAST_COVERED;
 use super::{Device, DeviceReport, Difference, Quantity, Run};
 use format::answers;
-use plots::{change_plots, trace_plots};
+use plots::change_plots;
 use tables::{device_tables, notes_table, overview_tables};
 use yoro_report::{Report, Section, Text};
 
@@ -29,9 +29,6 @@ pub(super) fn report(report: &DeviceReport) -> Report {
         section.text(Text::quiet(facts(report, device)));
         change_plots(report, device).into_iter().for_each(|plot| section.plot(plot));
         device_tables(report, device).into_iter().for_each(|table| section.table(table));
-        for scene in &device.scenes {
-            trace_plots(report, device, scene).into_iter().for_each(|plot| section.plot(plot));
-        }
         sections.push(section);
     }
     let mut doubts = Section::new(format!("What does not count, and what went wrong{mark}"), "");

@@ -2,7 +2,7 @@
 
 use super::ALL_SCENES;
 use super::tables::papers_changes;
-use crate::report::{CONFIDENCE, Device, DeviceReport, Quantity, Run};
+use crate::report::{CONFIDENCE, Device, DeviceReport, Quantity};
 use yoro_report::{Axis, Entry, Plot};
 
 /// Returns plots of the changes of power, frame rate and temperature by scene, with intervals.
@@ -47,29 +47,4 @@ fn change_plot(report: &DeviceReport, device: &Device, quantity: Quantity) -> Pl
 
 fn simulated(device: &Device) -> &'static str {
     if device.simulated { " (simulated)" } else { "" }
-}
-
-/// Returns plots of power, frame rate and temperature over time in a scene, with a thin line for each run that counts.
-pub fn trace_plots(report: &DeviceReport, device: &Device, scene: &str) -> Vec<Plot> {
-    let mark = simulated(device);
-    let values = |run: &Run, quantity| match quantity {
-        Quantity::Power => run.traces.power.clone(),
-        Quantity::Fps => run.traces.fps.clone(),
-        _ => run.traces.temperature.clone(),
-    };
-    let plot = |quantity: Quantity| {
-        let y = Axis::new(format!("{}, {}{mark}", quantity.name(), quantity.unit()));
-        let y = if quantity == Quantity::Temperature { y } else { y.from_zero() };
-        let title = format!("{scene}: {} over time{mark}", quantity.name());
-        let mut plot = Plot::traces(title, Axis::new("seconds since the run began"), y)
-            .caption("A line for each run that counts, warm-up left out.");
-        let of_scene = report.runs_of(device).filter(|run| run.scene == scene && run.counts(quantity));
-        let mut runs: Vec<&Run> = of_scene.collect();
-        runs.sort_by_key(|run| &run.method);
-        for run in runs {
-            plot.curve(Entry::ours(&run.method), values(run, quantity));
-        }
-        plot
-    };
-    [Quantity::Power, Quantity::Fps, Quantity::Temperature].map(plot).into()
 }
