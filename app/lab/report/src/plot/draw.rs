@@ -127,12 +127,13 @@ impl plotters::coord::ranged1d::ValueFormatter<f64> for Scaled {
 }
 
 /// Draws a plot: axes, then a layer for each entry of the legend, so that the page can hide one.
-pub(super) fn draw(plot: &Plot) -> DrawingResult<Drawing> {
+pub(super) fn draw(plot: &Plot, with_legend: bool) -> DrawingResult<Drawing> {
     let legend = plot.legend();
     let mut points = Vec::new();
     let mut body = layer(plot, |root, chart| {
         root.fill(&rgb(palette::BACKGROUND.0))?;
-        draw_axes(plot, chart)
+        draw_axes(plot, chart)?;
+        if with_legend { draw_legend(&legend, chart) } else { Ok(()) }
     })?;
     // The first entry comes last, on top of others with equal figures.
     for (i, entry) in legend.iter().enumerate().rev() {
@@ -246,6 +247,24 @@ fn draw_axes(plot: &Plot, chart: &mut Chart) -> DrawingResult<()> {
     let along = |value: &f64| PathElement::new(vec![(x.start, *value), (x.end, *value)], line);
     chart.draw_series(plot.y.lines_at.iter().map(along))?;
     Ok(())
+}
+
+/// Draws the legend of a document's picture inside the plot.
+fn draw_legend(legend: &[&Entry], chart: &mut Chart) -> DrawingResult<()> {
+    for entry in legend {
+        let (look, papers) = (palette::of(&entry.method), entry.papers);
+        chart
+            .draw_series(std::iter::empty::<PathElement<(f64, f64)>>())?
+            .label(&entry.label)
+            .legend(move |(x, y)| Polygon::new(outline(&look, (x + EM, y)), style(&look, papers)));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .legend_area_size(2 * EM)
+        .background_style(rgb(palette::BACKGROUND.0).filled())
+        .label_font(text())
+        .draw()
 }
 
 /// Draws the points of a series, and returns those that are finite with their places in SVG units.

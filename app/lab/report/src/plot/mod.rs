@@ -7,6 +7,7 @@ mod tests;
 use serde_json::{Value, json};
 
 use crate::Interval;
+use crate::palette::css_rules;
 use crate::stats::unique;
 
 /// The error when a plot cannot be drawn.
@@ -194,13 +195,24 @@ impl Plot {
         entries
     }
 
-    fn draw(&self) -> Result<draw::Drawing, PlotError> {
-        draw::draw(self).map_err(|error| PlotError { title: self.title.clone(), what: error.to_string() })
+    /// Returns the plot with its legend as an SVG document, light or dark as its reader prefers.
+    ///
+    /// # Errors
+    /// [`PlotError`] if plotters refuses.
+    pub fn to_svg(&self) -> Result<String, PlotError> {
+        let drawing = self.draw(true)?;
+        let style = format!("<style>@media (prefers-color-scheme: dark) {{{}}}</style>", css_rules());
+        Ok(drawing.svg.replacen('>', &format!(">{style}"), 1))
+    }
+
+    fn draw(&self, with_legend: bool) -> Result<draw::Drawing, PlotError> {
+        draw::draw(self, with_legend)
+            .map_err(|error| PlotError { title: self.title.clone(), what: error.to_string() })
     }
 
     /// Returns what the page's template and script need: drawing, legend, and the points with their places.
     pub(crate) fn to_page(&self) -> Result<Value, PlotError> {
-        let drawing = self.draw()?;
+        let drawing = self.draw(false)?;
         let legend = self.legend();
         let entries = legend.iter().zip(&drawing.swatches);
         let entries = entries.map(|(entry, swatch)| json!({ "label": entry.label, "swatch": swatch }));
