@@ -18,7 +18,7 @@ struct Run {
 }
 
 /// What does not fit into an hour at 1024 pixels an eye has fewer.
-const RUNS: [Run; 12] = [
+const RUNS: [Run; 11] = [
     Run { arguments: "scenes --rounds 1", minutes: 25 },
     Run { arguments: "flicker", minutes: 15 },
     Run { arguments: "half-rate --size 512x512", minutes: 10 },
@@ -30,7 +30,6 @@ const RUNS: [Run; 12] = [
     Run { arguments: "distance --size 512x512", minutes: 2 },
     Run { arguments: "lights --size 512x512 --viewpoints 1 --rounds 2", minutes: 2 },
     Run { arguments: "complexity --size 512x512 --rounds 2", minutes: 5 },
-    Run { arguments: "resolution --rounds 2 --scene prototype", minutes: 4 },
 ];
 /// The name of the estimate of phones, whose text is kept, and its arguments.
 const ESTIMATE: (&str, [&str; 6]) = ("estimate", ["--width", "512", "--height", "512", "--viewpoints", "1"]);

@@ -175,11 +175,6 @@ fn write_results(path: &Path, header: &Header) {
             ("patcher-neural", of(31.0, 2500.0)),
         ]
     });
-    for point in [512.0, 1024.0, 2048.0] {
-        append(w, conditions("resolution", "talk", None, Some(point)), 1, |round| {
-            both(point / 4.0, 30.0, round)
-        });
-    }
     append(w, conditions("new suite", "talk", None, None), 1, |_| vec![("x", vec![("apples", vec![3.0])])]);
 }
 

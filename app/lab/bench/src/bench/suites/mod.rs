@@ -23,7 +23,7 @@ use super::runner::Runner;
 use super::scenes::LazyObject;
 
 /// All experiments, in the order in which `all` runs them.
-pub const EXPERIMENTS: [&dyn Experiment; 13] = [
+pub const EXPERIMENTS: [&dyn Experiment; 12] = [
     &scenes::SCENES,
     &complexity::COMPLEXITY,
     &sweeps::STYLES,
@@ -31,7 +31,6 @@ pub const EXPERIMENTS: [&dyn Experiment; 13] = [
     &sweeps::DISTANCE,
     &patchers::Patchers,
     &lights::LIGHTS,
-    &sweeps::RESOLUTION,
     &flicker::Flicker,
     &reprojection::Reprojection,
     &half_rate::HalfRate,
@@ -55,8 +54,7 @@ struct FrameSuite {
 
 const QUALITY: FrameMeasures = FrameMeasures { cost: false, quality: true, pictures: false };
 const COST: FrameMeasures = FrameMeasures { cost: true, quality: false, pictures: false };
-const BOTH: FrameMeasures = FrameMeasures { cost: true, quality: true, pictures: false };
-const BOTH_WITH_PICTURES: FrameMeasures = FrameMeasures { pictures: true, ..BOTH };
+const ALL: FrameMeasures = FrameMeasures { cost: true, quality: true, pictures: true };
 
 impl Experiment for FrameSuite {
     fn name(&self) -> &'static str {

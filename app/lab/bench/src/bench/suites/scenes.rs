@@ -8,7 +8,7 @@ use super::super::tables::{
     means_table, metric_table, milliseconds, paper_scene, psnr_ssim, quality_of, scene_table, table_of,
     time_details,
 };
-use super::{BOTH_WITH_PICTURES, FrameSuite};
+use super::{ALL, FrameSuite};
 use yoro_report::paper::{PAPER, SYSTEMS};
 use yoro_report::stats::{mean, unique};
 use yoro_report::text::fixed;
@@ -17,7 +17,7 @@ use yoro_report::{Axis, Cell, Plot, Section, Table};
 pub(super) const SCENES: FrameSuite = FrameSuite {
     name: "scenes",
     about: "Frame time and quality of every method on eight scenes",
-    measures: BOTH_WITH_PICTURES,
+    measures: ALL,
     contenders: Contender::methods,
     jobs: |suite, choices, _| choices.sweep(suite, choices.all_scenes(), [()], |_, ()| {}),
     // The paper treats frame time, quality and overhead of the same eight scenes in three places.

@@ -3,7 +3,7 @@
 use super::super::contender::Contender;
 use super::super::job::Source;
 use super::super::tables::{Sweep, show_labels};
-use super::{BOTH, FrameSuite, QUALITY};
+use super::{FrameSuite, QUALITY};
 use yoro_assets::ShadingStyle;
 use yoro_report::paper::{DISTANCE as PAPERS_DISTANCE, PAPER};
 use yoro_report::{Axis, Section};
@@ -74,32 +74,6 @@ pub(super) const DISTANCE: FrameSuite = FrameSuite {
             ),
         );
         let sweep = Sweep { axis: Axis::new("distance, m"), text: |point| format!("{point}") };
-        sweep.show_quality(&mut section, suite, &[]);
-        vec![section]
-    },
-};
-
-pub(super) const RESOLUTION: FrameSuite = FrameSuite {
-    name: "resolution",
-    about: "Frame time and quality of every method from 512 to 2048 pixels per eye",
-    measures: BOTH,
-    contenders: Contender::methods,
-    jobs: |suite, choices, _| {
-        let pixels: &[u32] = choices.long_or_quick(&[512, 1024, 1536, 2048], &[256, 512]);
-        choices.sweep(suite, choices.varied_scenes(), pixels.iter().copied(), |job, pixels| {
-            job.eyes.size = [pixels; 2];
-            job.conditions.point = Some(f64::from(pixels));
-            job.frames = 1;
-        })
-    },
-    sections: |suite| {
-        let mut section = Section::new(
-            "Resolution",
-            "Cost and quality against the width of each eye's image. The paper measured at its devices' own resolution \
-             only.",
-        );
-        let sweep = Sweep { axis: Axis::new("width of an eye, pixels"), text: |point| format!("{point}") };
-        sweep.show_times(&mut section, suite);
         sweep.show_quality(&mut section, suite, &[]);
         vec![section]
     },
