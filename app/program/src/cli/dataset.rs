@@ -25,7 +25,7 @@ use yoro_files::interrupt;
 use yoro_gl::Context;
 use yoro_render::PreparedScene;
 use yoro_render::stereo::{ImBufferSize, Pipeline};
-use yoro_scenes::{self, BUILTINS};
+use yoro_scenes::{self, BUILTINS, replacements};
 
 /// The kinds of pictures in a group. Each has a folder of this name.
 const PICTURES: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
@@ -135,7 +135,7 @@ impl DatasetArgs {
     /// Returns the names of the scenes.
     fn names(&self) -> Vec<String> {
         match self.scenes.as_slice() {
-            [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
+            [] => replacements().map(|b| b.name.to_owned()).collect(),
             given => given.to_vec(),
         }
     }
