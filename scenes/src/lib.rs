@@ -127,7 +127,7 @@ pub const BUILTINS: &[Builtin] = &[
         title: "A court with a bay for each thing that synthesis finds hard",
         stands_for: "",
         style: ShadingStyle::Realistic,
-        kilo_triangles: 60,
+        kilo_triangles: 55,
         generate: hard_cases::build,
     },
 ];

@@ -37,7 +37,7 @@ const SETTINGS: &str = "dataset.json";
 /// Write image groups of scenes: both eyes, depth, the reprojected eye, its holes, and the patched eye
 #[derive(clap::Args, Clone, Debug)]
 pub struct DatasetArgs {
-    /// Built-in scenes, OBJ, glTF or GLB files [default: all built-in scenes]
+    /// Built-in scenes, OBJ, glTF or GLB files [default: the eight that replace the paper's]
     scenes: Vec<String>,
     /// Groups of each scene, at even pace along its camera path
     #[arg(long, default_value_t = 16, value_parser = args::whole::<u32>(1..=1_000_000), value_name = "N")]

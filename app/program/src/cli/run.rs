@@ -26,7 +26,7 @@ use yoro_scenes::{BUILTINS, replacements};
 /// Compare rendering both eyes with synthesizing one, on built-in scenes or on files: pictures, figures, a report
 #[derive(clap::Args, Clone, Debug)]
 pub struct RunArgs {
-    /// Built-in scenes, OBJ, glTF or GLB files [default: all built-in scenes]
+    /// Built-in scenes, OBJ, glTF or GLB files [default: the eight that replace the paper's]
     scenes: Vec<String>,
     /// Viewpoints of each scene that are measured, spread over its camera path
     #[arg(long, default_value_t = 1, value_parser = args::whole::<u32>(1..=64), value_name = "N")]

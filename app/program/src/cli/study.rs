@@ -41,7 +41,7 @@ struct PlanArgs {
     /// needs one of method=
     #[arg(long = "set", value_name = "METHOD:KEY=VALUE")]
     settings: Vec<String>,
-    /// Scenes, separated by commas; all built-in scenes by default
+    /// Scenes, separated by commas; by default the eight that replace the paper's
     #[arg(long, value_delimiter = ',', value_name = "SCENE,...")]
     scenes: Vec<String>,
     /// Questions that the viewer asks after each trial, separated by commas
