@@ -84,7 +84,7 @@ impl Experiment for HardCases {
             ),
         );
         let contenders = suite.compared(metric::SSIM);
-        let columns = [&contenders[..], &["<what one sees"]].concat();
+        let columns = [&contenders[..], &["<filled holes, looked at"]].concat();
         let mut table = table_of("PSNR in dB/SSIM/FLIP of the part", &["<case"], &columns);
         for setting in &suite.settings {
             let name = setting.conditions.label.as_deref().unwrap_or_default();
