@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
+use yoro_scenes::hard_cases::{CASES, Case};
 
 use crate::program::{interrupt, run, succeed};
 
@@ -169,7 +170,7 @@ fn the_other_experiments_are_measured_and_reported() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     let options = "--quick --scene talk --size 64x64 --rounds 1 --out r.jsonl";
-    succeed(at, &format!("bench reprojection half-rate foveation stream {options}"));
+    succeed(at, &format!("bench reprojection half-rate hard-cases foveation stream {options}"));
     let records = records(&at.join("r.jsonl"));
     let who = |label: &str| -> Vec<&str> {
         let measured = of_kind(&records, "measurement").into_iter().filter(|m| m["label"] == label);
@@ -191,6 +192,13 @@ fn the_other_experiments_are_measured_and_reported() {
     assert_eq!(who("60 degrees").len(), 9);
     succeed(at, "report r.jsonl --out out");
     let results = fs::read_to_string(at.join("out/report.md")).unwrap();
+    for Case { name, seen, .. } in CASES {
+        assert_eq!(who(name), ["mono", "yoro-gather", "yoro-holes-rendered"], "{name}");
+        let quality = of_kind(&records, "measurement").into_iter().filter(|m| m["label"] == name);
+        let psnr: Vec<f64> = quality.map(|m| m["values"]["psnr"][0].as_f64().unwrap()).collect();
+        assert!(psnr.is_sorted() && psnr[0] < psnr[1], "{name}: {psnr:?}");
+        assert!(results.contains(seen), "{name}: {results}");
+    }
     for needed in
         ["## Reprojection", "## Half rate", "## Foveation", "one eye and depth, QP 20", "the paper's -39.6 %"]
     {

@@ -25,7 +25,7 @@ use yoro_files::interrupt;
 use yoro_gl::Context;
 use yoro_render::PreparedScene;
 use yoro_render::stereo::{ImBufferSize, Pipeline};
-use yoro_scenes::{self, BUILTINS};
+use yoro_scenes::{self, BUILTINS, replacements};
 
 /// The kinds of pictures in a group. Each has a folder of this name.
 const PICTURES: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
@@ -37,7 +37,7 @@ const SETTINGS: &str = "dataset.json";
 /// Write image groups of scenes: both eyes, depth, the reprojected eye, its holes, and the patched eye
 #[derive(clap::Args, Clone, Debug)]
 pub struct DatasetArgs {
-    /// Built-in scenes, OBJ, glTF or GLB files [default: all built-in scenes]
+    /// Built-in scenes, OBJ, glTF or GLB files [default: the eight that replace the paper's]
     scenes: Vec<String>,
     /// Groups of each scene, at even pace along its camera path
     #[arg(long, default_value_t = 16, value_parser = args::whole::<u32>(1..=1_000_000), value_name = "N")]
@@ -135,7 +135,7 @@ impl DatasetArgs {
     /// Returns the names of the scenes.
     fn names(&self) -> Vec<String> {
         match self.scenes.as_slice() {
-            [] => BUILTINS.iter().map(|b| b.name.to_owned()).collect(),
+            [] => replacements().map(|b| b.name.to_owned()).collect(),
             given => given.to_vec(),
         }
     }

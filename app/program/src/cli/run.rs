@@ -21,12 +21,12 @@ use yoro_bench::machine::Parameter;
 use yoro_files as files;
 use yoro_gl::Context;
 use yoro_render::stereo::{Method, Pipeline};
-use yoro_scenes::BUILTINS;
+use yoro_scenes::{BUILTINS, replacements};
 
 /// Compare rendering both eyes with synthesizing one, on built-in scenes or on files: pictures, figures, a report
 #[derive(clap::Args, Clone, Debug)]
 pub struct RunArgs {
-    /// Built-in scenes, OBJ, glTF or GLB files [default: all built-in scenes]
+    /// Built-in scenes, OBJ, glTF or GLB files [default: the eight that replace the paper's]
     scenes: Vec<String>,
     /// Viewpoints of each scene that are measured, spread over its camera path
     #[arg(long, default_value_t = 1, value_parser = args::whole::<u32>(1..=64), value_name = "N")]
@@ -109,7 +109,7 @@ impl RunArgs {
     }
 
     fn choices(&self) -> Choices {
-        let builtin = || BUILTINS.iter().map(|builtin| builtin.name.to_owned()).collect();
+        let builtin = || replacements().map(|builtin| builtin.name.to_owned()).collect();
         let contenders = self.methods.iter().flat_map(|&method| match method {
             Method::Synthesized => self.pipelines.iter().copied().map(Contender::Synthesized).collect(),
             other => vec![Contender::Method(other)],

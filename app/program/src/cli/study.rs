@@ -11,7 +11,7 @@ use crate::cli::machine;
 use yoro_devices::study::{Collected, Condition, Plan, Ratings, Study, StudyError, read_trials};
 use yoro_files as files;
 use yoro_render::stereo::Method;
-use yoro_scenes::{BUILTINS, DEFAULT_SEED};
+use yoro_scenes::{BUILTINS, DEFAULT_SEED, replacements};
 use yoro_settings::Settings;
 
 /// Plan a user study, collect its ratings, analyse them
@@ -41,7 +41,7 @@ struct PlanArgs {
     /// needs one of method=
     #[arg(long = "set", value_name = "METHOD:KEY=VALUE")]
     settings: Vec<String>,
-    /// Scenes, separated by commas; all built-in scenes by default
+    /// Scenes, separated by commas; by default the eight that replace the paper's
     #[arg(long, value_delimiter = ',', value_name = "SCENE,...")]
     scenes: Vec<String>,
     /// Questions that the viewer asks after each trial, separated by commas
@@ -112,7 +112,7 @@ impl Subcommand for StudyArgs {
 }
 
 fn plan(args: &PlanArgs) -> anyhow::Result<()> {
-    let builtin = || BUILTINS.iter().map(|builtin| builtin.name.to_owned()).collect();
+    let builtin = || replacements().map(|builtin| builtin.name.to_owned()).collect();
     let scenes = if args.scenes.is_empty() { builtin() } else { args.scenes.clone() };
     for scene in &scenes {
         let file = files::has_extension(Path::new(scene), &["obj", "gltf", "glb"]);

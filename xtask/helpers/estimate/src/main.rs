@@ -87,8 +87,10 @@ fn main() -> anyhow::Result<()> {
         std::env::var_os("YORO_SHADERS").is_some(),
         "the shaders must count what they run: use cargo xtask maintain estimate"
     );
-    let scenes =
-        BUILTINS.iter().filter(|b| args.scenes.is_empty() || args.scenes.iter().any(|s| s == b.name));
+    let scenes = BUILTINS.iter().filter(|b| match &args.scenes[..] {
+        [] => !b.stands_for.is_empty(),
+        named => named.iter().any(|s| s == b.name),
+    });
     let mut estimates = Vec::new();
     for builtin in scenes {
         eprintln!("counting {}", builtin.name);

@@ -13,7 +13,7 @@ use yoro::eyes::EyeOptions;
 use yoro_assets::ShadingStyle;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Pipeline, StereoOptions};
-use yoro_scenes::BUILTINS;
+use yoro_scenes::{BUILTINS, replacements};
 
 /// The user's choices for all suites.
 #[derive(Clone)]
@@ -100,9 +100,9 @@ impl Choices {
         }
     }
 
-    /// Returns the scenes of a suite on all built-in scenes.
+    /// Returns the scenes of a suite on all scenes that replace the paper's.
     pub(super) fn all_scenes(&self) -> Vec<String> {
-        self.scenes(BUILTINS.iter().map(|builtin| builtin.name))
+        self.scenes(replacements().map(|builtin| builtin.name))
     }
 
     /// Returns the scenes of a suite that varies something else than the scene.

@@ -88,7 +88,8 @@ impl Views {
         self
     }
 
-    fn new(job: &Job, heads: Vec<(String, Pose)>) -> anyhow::Result<Views> {
+    /// Returns the frames of named poses of the head.
+    pub fn new(job: &Job, heads: Vec<(String, Pose)>) -> anyhow::Result<Views> {
         ensure!(!heads.is_empty(), "{} has no viewpoint: give it one or more", job.conditions.scene);
         let (names, poses): (Vec<_>, Vec<_>) = heads.into_iter().unzip();
         Ok(Views { names, pairs: poses.into_iter().map(|pose| job.eyes.pair(pose)).collect() })

@@ -24,7 +24,6 @@ use yoro_render::{DepthReader, PreparedScene, ViewTargets};
 use yoro_report::stats::{geometric_mean, mean};
 use yoro_report::text::fixed;
 use yoro_report::{Cell, Section, Table};
-use yoro_scenes::BUILTINS;
 
 /// The vertical fields of view in degrees.
 pub(super) const DEGREES: [f32; 2] = [60.0, 90.0];
@@ -52,9 +51,8 @@ impl Experiment for Foveated {
     }
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {
-        let all: Vec<&str> = BUILTINS.iter().map(|builtin| builtin.name).collect();
-        let scenes = if choices.quick { &QUICK_SCENES[..] } else { &all };
-        Ok(choices.sweep(self, choices.scenes(scenes.iter().copied()), DEGREES, |job, degrees| {
+        let scenes = if choices.quick { choices.scenes(QUICK_SCENES) } else { choices.all_scenes() };
+        Ok(choices.sweep(self, scenes, DEGREES, |job, degrees| {
             job.rounds = choices.rounds;
             job.eyes.fov_y = degrees.to_radians();
             job.conditions.label = Some(format!("{degrees} degrees"));

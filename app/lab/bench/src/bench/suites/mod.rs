@@ -4,6 +4,7 @@ mod complexity;
 mod flicker;
 mod foveation;
 mod half_rate;
+mod hard_cases;
 mod lights;
 mod patchers;
 mod reprojection;
@@ -23,7 +24,7 @@ use super::runner::Runner;
 use super::scenes::LazyObject;
 
 /// All experiments, in the order in which `all` runs them.
-pub const EXPERIMENTS: [&dyn Experiment; 12] = [
+pub const EXPERIMENTS: [&dyn Experiment; 13] = [
     &scenes::SCENES,
     &complexity::COMPLEXITY,
     &sweeps::STYLES,
@@ -36,6 +37,7 @@ pub const EXPERIMENTS: [&dyn Experiment; 12] = [
     &half_rate::HalfRate,
     &foveation::Foveated,
     &stream::Stream,
+    &hard_cases::HardCases,
 ];
 
 /// An experiment that measures frames at viewpoints.
