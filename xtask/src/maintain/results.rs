@@ -22,7 +22,7 @@ const RUNS: [Run; 11] = [
     Run { arguments: "scenes --rounds 1", minutes: 25 },
     Run { arguments: "flicker", minutes: 15 },
     Run { arguments: "half-rate --size 512x512", minutes: 10 },
-    Run { arguments: "hard-cases --size 512x512", minutes: 3 },
+    Run { arguments: "hard-cases", minutes: 2 },
     Run { arguments: "reprojection --size 512x512 --viewpoints 2", minutes: 5 },
     Run { arguments: "patchers --size 512x512 --viewpoints 1 --rounds 1", minutes: 2 },
     Run { arguments: "styles --size 512x512 --viewpoints 1", minutes: 2 },
