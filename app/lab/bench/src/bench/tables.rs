@@ -43,6 +43,16 @@ pub(super) fn psnr_ssim(psnr: Option<f64>, ssim: Option<f64>) -> Option<String> 
     Some(format!("{psnr} / {:.4}", ssim?))
 }
 
+/// The title of tables of [`psnr_ssim_flip`].
+pub(super) const PSNR_SSIM_FLIP: &str = "PSNR in dB/SSIM/FLIP";
+
+/// Formats the three of them; `None` if SSIM or FLIP was not measured. `mean` has the mean of a metric.
+pub(super) fn psnr_ssim_flip(mean: impl Fn(&str) -> Option<f64>) -> Option<String> {
+    // Identical images have no finite PSNR.
+    let psnr = fixed(mean(metric::PSNR), 2).unwrap_or_else(|| "∞".into());
+    Some(format!("{psnr}/{:.4}/{:.3}", mean(metric::SSIM)?, mean(metric::FLIP)?))
+}
+
 /// What the figures of [`cost_of`] are.
 pub(super) const QUARTILES: &str = "Medians of all frames, and their quartiles.";
 

@@ -11,13 +11,12 @@ use super::super::record::metric;
 use super::super::results::SuiteData;
 use super::super::runner::{Runner, eye_image};
 use super::super::scenes::LazyObject;
-use super::super::tables::{cell, push_refusals, table_of};
+use super::super::tables::{PSNR_SSIM_FLIP, cell, psnr_ssim_flip, push_refusals, table_of};
 use super::super::views::Views;
 use yoro::eyes::View;
 use yoro_files::interrupt;
 use yoro_metrics::Comparison;
 use yoro_render::PreparedScene;
-use yoro_report::text::fixed;
 use yoro_report::{Cell, Section};
 use yoro_scenes::hard_cases::{CASES, Case};
 
@@ -85,18 +84,13 @@ impl Experiment for HardCases {
         );
         let contenders = suite.compared(metric::SSIM);
         let columns = [&contenders[..], &["<filled holes, looked at"]].concat();
-        let mut table = table_of("PSNR in dB/SSIM/FLIP of the part", &["<case"], &columns);
+        let mut table = table_of(PSNR_SSIM_FLIP, &["<case"], &columns);
         for setting in &suite.settings {
             let name = setting.conditions.label.as_deref().unwrap_or_default();
             let mut cells = vec![Cell::plain(name)];
             for contender in &contenders {
-                let quality = setting.find(contender).and_then(|measured| {
-                    let of = |metric, decimals| fixed(measured.mean(metric), decimals);
-                    // Identical images have no finite PSNR.
-                    let psnr = of(metric::PSNR, 2).unwrap_or_else(|| "∞".into());
-                    Some(format!("{psnr}/{}/{}", of(metric::SSIM, 3)?, of(metric::FLIP, 3)?))
-                });
-                cells.push(cell(contender, quality));
+                let measured = setting.find(contender);
+                cells.push(cell(contender, psnr_ssim_flip(|metric| measured?.mean(metric))));
             }
             let seen = CASES.iter().find(|case| case.name == name).map_or("", |case| case.seen);
             cells.push(Cell::long(seen));

@@ -4,8 +4,8 @@ use super::super::contender::Contender;
 use super::super::record::{PassClock, metric};
 use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
 use super::super::tables::{
-    MetricColumn, PapersColumn, QUALITY_PLOTS, QUARTILES, QualityPlot, cell, cost_of, mark_scenes,
-    means_table, metric_table, milliseconds, paper_scene, psnr_ssim, quality_of, scene_table, table_of,
+    MetricColumn, PSNR_SSIM_FLIP, PapersColumn, QUALITY_PLOTS, QUARTILES, QualityPlot, cell, cost_of,
+    mark_scenes, means_table, metric_table, milliseconds, paper_scene, psnr_ssim_flip, scene_table, table_of,
     time_details,
 };
 use super::{ALL, FrameSuite};
@@ -108,16 +108,12 @@ fn quality(suite: &SuiteData) -> Section {
         },
         mean: Some(format!("{:.2} / {:.4}", PAPER.average.psnr, PAPER.average.ssim)),
     };
-    let with_flip = |quality: Option<String>, flip: Option<f64>| Some(format!("{} / {:.3}", quality?, flip?));
     let text = |setting: &SettingData, name: &str| {
         let measured = setting.find(name)?;
-        with_flip(quality_of(measured), measured.mean(metric::FLIP))
+        psnr_ssim_flip(|metric| measured.mean(metric))
     };
-    let mean_of = |name: &str| {
-        let [psnr, ssim, flip] = [metric::PSNR, metric::SSIM, metric::FLIP].map(|of| suite.mean(name, of));
-        with_flip(psnr_ssim(psnr, ssim), flip)
-    };
-    let mut table = scene_table(suite, "PSNR in dB / SSIM / FLIP", &contenders, text, mean_of, Some(papers));
+    let mean_of = |name: &str| psnr_ssim_flip(|metric| suite.mean(name, metric));
+    let mut table = scene_table(suite, PSNR_SSIM_FLIP, &contenders, text, mean_of, Some(papers));
     table.note = "RGB; SSIM with a gaussian window 11x11. ∞: identical images. The paper has no FLIP.".into();
     section.table(table);
     section.table(quality_in_parts(suite, &contenders));
