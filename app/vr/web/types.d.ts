@@ -12,7 +12,7 @@ declare module '*yoro_web.js' {
     static readCode(rgba: Uint8Array, width: number): string | undefined;
   }
   export class Why extends Built {}
-  export class StreamOrder extends Built {}
+  export class StreamReport extends Built {}
   export class Headset extends Built { static planes(): Float32Array }
 }
 declare module '*yoro_web_video.js' {

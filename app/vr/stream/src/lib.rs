@@ -1,8 +1,8 @@
 //! Streaming of one eye with its depth to a client, which makes both eyes from it at the head's newest pose.
 //!
 //! [`FromClient`] and [`FromServer`] are the messages, [`RateControl`] decides when a frame is due and how finely it is
-//! encoded (Google Congestion Control), [`ReorderBuffer`] puts frames in order, and [`DepthSpan`] maps the depth's 8 bits to distances. The server
-//! (`yoro serve`) and the page use the same code. This crate must not open connections or read clocks.
+//! encoded (Google Congestion Control), and [`DepthSpan`] maps the depth's 8 bits to distances. The server (`yoro serve`) and the page
+//! use the same code. This crate must not open connections or read clocks.
 //!
 //! With the feature `gl`, `FrameRenderer` makes the pictures that a server sends of a scene, and `StreamedEyes` both
 //! eyes from a decoded one.
@@ -13,10 +13,9 @@ mod eyes;
 mod messages;
 #[cfg(feature = "gl")]
 mod pictures;
-mod reorder;
 mod span;
 
-pub use control::{Delivery, RateControl};
+pub use control::RateControl;
 #[cfg(feature = "gl")]
 pub use eyes::{Correction, DecodedPicture, StreamedEyes};
 pub use messages::{
@@ -25,5 +24,4 @@ pub use messages::{
 };
 #[cfg(feature = "gl")]
 pub use pictures::{FrameRenderer, Mode, Picture, StreamError};
-pub use reorder::ReorderBuffer;
 pub use span::DepthSpan;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyesError, Frustum, Pose, PoseWarp, View};
 
 /// The version of the messages. Clients with another version are refused.
-pub const VERSION: u16 = 3;
+pub const VERSION: u16 = 4;
 
 /// The secret that a client must send to be served: 128 random bits.
 pub type Token = [u8; 16];
@@ -100,8 +100,6 @@ pub enum FromClient {
     Request(ViewRequest),
     /// What has become of the newest frames.
     Report(Report),
-    /// The frame with this number is missing, so those after it cannot be decoded: an intra frame is needed.
-    Missing(u32),
 }
 
 /// What the parts of a frame's picture show. The parts are side by side from the left and of one size. Eyes are wider
@@ -374,7 +372,7 @@ mod tests {
         let hello = FromClient::Hello { version: VERSION, token: [7; 16] };
         let mut report = Report { decoded: Some(9), ..Report::default() };
         report.arrived(10, 70.5);
-        vec![hello, FromClient::Request(REQUEST), FromClient::Report(report), FromClient::Missing(10)]
+        vec![hello, FromClient::Request(REQUEST), FromClient::Report(report)]
     }
 
     fn down() -> Vec<FromServer<'static>> {

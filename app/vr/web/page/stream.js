@@ -19,10 +19,8 @@ let worker = null;
 let playing = null;
 let isThere = false;
 /** Sums since the last line of figures. */
-let sums = { frames: 0, lost: 0, bytes: 0, skipped: 0, latency: 0 };
+let sums = { frames: 0, bytes: 0, skipped: 0, latency: 0 };
 let last = null;
-/** The name of the transport. */
-let transport = '';
 let timers = [];
 /** When the last request was sent to the server. */
 let asked = 0;
@@ -67,12 +65,10 @@ function pause() {
 }
 
 /**
- * Follows a stream.
- * @param {string} stream a token, for the server that the page comes from; or, separated by commas, a server's address,
- * the SHA-256 of its certificate in hexadecimal digits, and a token
+ * Follows the stream of the server that the page comes from.
+ * @param {string} token
  */
-export function follow(stream) {
-  const [token, hash, address] = stream.split(',').reverse();
+export function follow(token) {
   const hello = app.page.streamHello(token);
   if (!hello) {
     loading(null);
@@ -82,20 +78,7 @@ export function follow(stream) {
   if (!canDecode()) return;
   loading('Waiting for the stream');
   element('where').textContent = 'The eye comes from the server, which gets to know where your head is.';
-  const canTransport = address && 'WebTransport' in globalThis;
-  const isOwn = !address || address === location.host;
-  if (!isOwn && !canTransport) {
-    loading(null);
-    say('This browser has no WebTransport, by which pages of other servers get the stream: update it, or use another one.');
-    return;
-  }
-  const bytes = Uint8Array.from(hash?.match(/../g) ?? [], (byte) => parseInt(byte, 16));
-  const begin = {
-    hello,
-    module: app.module,
-    socket: isOwn ? `${location.origin.replace(/^http/, 'ws')}/stream` : null,
-    transport: canTransport ? { address: `https://${address}/stream`, hash: bytes } : null,
-  };
+  const begin = { hello, module: app.module, address: `${location.origin.replace(/^http/, 'ws')}/stream` };
   start(new URL('stream-worker.js', import.meta.url));
   worker.postMessage({ begin });
   const keepAlive = () => { if (performance.now() - asked > REQUEST_INTERVAL) request(); };
@@ -126,14 +109,12 @@ function stop() {
   app.settings.stream = null;
 }
 
-function receive({ answer, by, lost, fault, head, way, planes, frame, ms, isTimed, bytes, skipped, framesLost }) {
+function receive({ answer, lost, fault, head, way, planes, frame, ms, isTimed, bytes, skipped }) {
   if (!app.page) {
     frame?.close();
     return;
   }
-  sums.lost += framesLost ?? 0;
   if (answer) welcome(answer);
-  if (by) transport = by;
   if (fault) {
     end();
     say(fault);
@@ -216,11 +197,11 @@ function request() {
 
 function figures() {
   if (!isThere || !last || !app.page) return;
-  const { frames, lost, bytes, skipped, latency } = sums;
-  sums = { frames: 0, lost: 0, bytes: 0, skipped: 0, latency: 0 };
+  const { frames, bytes, skipped, latency } = sums;
+  sums = { frames: 0, bytes: 0, skipped: 0, latency: 0 };
   const [cm, degrees] = app.page.streamCorrection() ?? [0, 0];
   element('facts').textContent = frames
-    ? `Stream by ${transport}: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
-      + `(rendered in ${last.render.toFixed(0)}, encoded in ${last.code.toFixed(0)}), corrected by ${cm.toFixed(1)} cm and ${degrees.toFixed(1)}°, ${lost} lost, ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
+    ? `Stream: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
+      + `(rendered in ${last.render.toFixed(0)}, encoded in ${last.code.toFixed(0)}), corrected by ${cm.toFixed(1)} cm and ${degrees.toFixed(1)}°, ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
     : 'Stream: no frames.';
 }

@@ -1,6 +1,5 @@
 //! The rules of admission: which pages may connect, and with which first message.
 
-use url::{Host, Url};
 use yoro_stream::{FromClient, Refusal, Token, VERSION};
 
 /// Decides who may see the stream.
@@ -10,13 +9,11 @@ pub struct Access {
     pub scheme: &'static str,
     /// The host names under which browsers reach this server, in the form of [`host`].
     pub hosts: Vec<String>,
-    /// The origin of another server whose page may also show the stream.
-    pub origin: Option<String>,
 }
 
 impl Access {
-    /// True if a page may connect: the requested host must be this server's, and the origin this server or the allowed
-    /// one. This keeps out other sites' pages, even if their names are made to resolve to this machine.
+    /// True if a page may connect: the requested host and the page's origin must be this server's. This keeps out other
+    /// sites' pages, even if their names are made to resolve to this machine.
     pub fn allows(&self, host: &str, origin: Option<&str>) -> bool {
         let host = self::host(self.scheme, host);
         let is_own = |origin: &str| {
@@ -25,9 +22,7 @@ impl Access {
                 .and_then(|rest| rest.strip_prefix("://"))
                 .is_some_and(|from| self::host(self.scheme, from) == host)
         };
-        let is_named = |origin: &str| Some(origin) == self.origin.as_deref();
-        self.hosts.iter().any(|name| name == host)
-            && origin.is_some_and(|origin| is_own(origin) || is_named(origin))
+        self.hosts.iter().any(|name| name == host) && origin.is_some_and(is_own)
     }
 
     /// Returns whether a client may be served by its first message; `None` if that is no hello.
@@ -51,51 +46,22 @@ pub fn host<'a>(scheme: &str, host: &'a str) -> &'a str {
     host.strip_suffix(port).unwrap_or(host)
 }
 
-/// Parses the origin of another server's page, and returns it in the form in which browsers send it.
-///
-/// # Errors
-/// A sentence, also for pages that browsers do not let decode video, because nobody vouches for their server.
-pub fn origin(text: &str) -> Result<String, String> {
-    let wrong = || "an origin is https://HOST, without a path".to_owned();
-    let url = Url::parse(text).map_err(|_| wrong())?;
-    let is_here = match url.host() {
-        Some(Host::Domain(name)) => name == "localhost",
-        Some(Host::Ipv4(address)) => address.is_loopback(),
-        Some(Host::Ipv6(address)) => address.is_loopback(),
-        None => false,
-    };
-    let origin = url.origin().ascii_serialization();
-    let is_whole =
-        text.trim_end_matches('/').len() == text.len() && url.as_str().trim_end_matches('/') == origin;
-    match url.scheme() {
-        "https" if is_whole => Ok(origin),
-        "http" if is_whole && is_here => Ok(origin),
-        _ => Err(wrong()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use yoro_stream::Report;
 
     fn access() -> Access {
-        Access {
-            token: [7; 16],
-            scheme: "https",
-            hosts: vec!["10.0.0.1:80".to_owned()],
-            origin: Some("https://host".to_owned()),
-        }
+        Access { token: [7; 16], scheme: "https", hosts: vec!["10.0.0.1:80".to_owned()] }
     }
 
     #[test]
-    fn pages_of_this_server_and_of_the_named_origin_may_connect() {
+    fn pages_of_this_server_may_connect() {
         for (host, origin, allowed) in [
             ("10.0.0.1:80", Some("https://10.0.0.1:80"), true),
-            ("10.0.0.1:80", Some("https://host"), true),
             ("10.0.0.1:80", Some("http://10.0.0.1:80"), false),
             ("10.0.0.1:80", Some("https://host.example"), false),
             ("10.0.0.1:80", None, false),
-            ("elsewhere", Some("https://host"), false),
             ("elsewhere", Some("https://elsewhere"), false),
         ] {
             assert_eq!(access().allows(host, origin), allowed, "{host}, {origin:?}");
@@ -106,7 +72,7 @@ mod tests {
     fn browsers_leave_out_the_default_port() {
         let allows = |scheme: &'static str, host: &str, origin: &str| {
             let hosts = vec![super::host(scheme, host).to_owned()];
-            let access = Access { scheme, hosts, origin: None, ..access() };
+            let access = Access { scheme, hosts, ..access() };
             let named = host.rsplit_once(':').unwrap().0;
             [host, named].iter().all(|asked| access.allows(asked, Some(origin)))
         };
@@ -115,25 +81,6 @@ mod tests {
         assert!(allows("https", "10.0.0.1:443", "https://10.0.0.1:443"));
         assert!(!allows("http", "127.0.0.1:443", "http://127.0.0.1"));
         assert!(!allows("https", "10.0.0.1:443", "http://10.0.0.1"));
-    }
-
-    #[test]
-    fn origins_are_those_that_browsers_send() {
-        for (text, sent) in [
-            ("https://h", "https://h"),
-            ("https://H.example:444", "https://h.example:444"),
-            ("https://h:443", "https://h"),
-            ("http://localhost:8000", "http://localhost:8000"),
-            ("http://127.0.0.1:80", "http://127.0.0.1"),
-        ] {
-            assert_eq!(origin(text).as_deref(), Ok(sent));
-        }
-        for wrong in
-            "http://h https://h::: https://[ https://h/ https://h/a https://u@h https://h?a h ftp://h"
-                .split(' ')
-        {
-            assert!(origin(wrong).is_err(), "{wrong}");
-        }
     }
 
     #[test]
@@ -147,7 +94,7 @@ mod tests {
             token[wrong] ^= 1;
             assert_eq!(hello(VERSION, token), Some(Err(Refusal::Token)));
         }
-        assert_eq!(judge(FromClient::Missing(0)), None);
+        assert_eq!(judge(FromClient::Report(Report::default())), None);
         assert_eq!(access().judge(b""), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Clients: how they are admitted, one at a time, and how they are spoken with, whatever their connection.
+//! Clients: how they are admitted, one at a time, and how they are spoken with.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use anyhow::Context as _;
 
 use super::access::Access;
+use super::web_socket::Frames;
 use yoro_stream::{FromClient, FromServer, Refusal};
 
 /// The largest message of a client in bytes.
@@ -21,30 +22,10 @@ pub const SILENCE: Duration = Duration::from_secs(3);
 pub struct Client {
     /// Its messages with their times of arrival, until it is gone.
     pub heard: Receiver<(FromClient, Instant)>,
-    /// The connection on which it gets frames.
-    pub transport: Box<dyn Transport>,
+    /// Where its frames go. The connection is closed when this is dropped.
+    pub frames: Frames,
     /// Held while it is served. It is dropped last, when the connection is closed.
     _seat: Seat,
-}
-
-/// A connection on which frames are sent. It is closed when this is dropped.
-pub trait Transport: Send {
-    /// Returns the protocol's name.
-    fn name(&self) -> &'static str;
-
-    /// Sends a frame. May wait while earlier frames are sent.
-    ///
-    /// # Errors
-    /// If the client is gone.
-    fn send(&self, number: u32, bytes: Vec<u8>) -> anyhow::Result<()>;
-
-    /// True if frames have streams of their own, so that a late one can be given up.
-    fn can_give_up(&self) -> bool {
-        false
-    }
-
-    /// Stops sending the frames before this one, if that is possible.
-    fn give_up(&self, _number: u32) {}
 }
 
 /// The right to be served. When it is dropped, another client may be admitted.
@@ -56,7 +37,7 @@ impl Drop for Seat {
     }
 }
 
-/// Admits clients of all transports.
+/// Admits clients.
 pub struct Lobby {
     pub access: Access,
     /// The first message to an admitted client, such as the head's first pose.
@@ -91,10 +72,10 @@ impl Lobby {
     }
 
     /// Passes on a client to be served. Returns where its messages go.
-    pub fn admit(&self, transport: Box<dyn Transport>, seat: Seat) -> Sender<(FromClient, Instant)> {
+    pub fn admit(&self, frames: Frames, seat: Seat) -> Sender<(FromClient, Instant)> {
         let (tell, heard) = mpsc::channel();
         // If there is no receiver, the program is about to end.
-        let _ = self.admitted.send(Client { heard, transport, _seat: seat });
+        let _ = self.admitted.send(Client { heard, frames, _seat: seat });
         tell
     }
 }
@@ -107,7 +88,7 @@ mod tests {
 
     #[test]
     fn one_client_is_served_at_a_time() {
-        let access = Access { token: [7; 16], scheme: "http", hosts: Vec::new(), origin: None };
+        let access = Access { token: [7; 16], scheme: "http", hosts: Vec::new() };
         let (lobby, _clients) = Lobby::new(access, &FromServer::Welcome(Pose::IDENTITY));
         let hello = FromClient::Hello { version: VERSION, token: [7; 16] }.to_bytes();
         let (answer, first) = lobby.answer(&hello).unwrap();

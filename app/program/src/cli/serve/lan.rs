@@ -15,24 +15,13 @@ use rcgen::{CertificateParams, DnType, ExtendedKeyUsagePurpose, KeyPair, SanType
 use rustls::ServerConfig;
 use rustls::pki_types::pem::PemObject as _;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
-use wtransport::proto::WEBTRANSPORT_ALPN;
 use yoro_files::xdg;
 
 const DAY: Duration = Duration::from_secs(24 * 60 * 60);
-/// A kind of certificate.
-struct Kind {
-    /// The suffix of its file's name.
-    suffix: &'static str,
-    /// The number of days for which it is valid.
-    valid: u32,
-    /// The number of days for which it is used.
-    used: u32,
-}
-
-/// For HTTPS. Apple's browsers refuse certificates that are valid for more than 825 days.
-const HTTPS: Kind = Kind { suffix: "pem", valid: 397, used: 365 };
-/// For WebTransport. Browsers accept a certificate by its hash if it is valid for at most 14 days and has a P-256 key.
-const QUIC: Kind = Kind { suffix: "quic.pem", valid: 14, used: 6 };
+/// The number of days for which a certificate is valid. Apple's browsers refuse more than 825.
+const VALID: u32 = 397;
+/// The number of days for which it is used.
+const USED: u32 = 365;
 
 /// The address and the encryption of a server in the local network.
 pub struct Lan {
@@ -40,10 +29,6 @@ pub struct Lan {
     pub tls: Arc<ServerConfig>,
     /// SHA-256 of the certificate, formatted as in browsers.
     pub fingerprint: String,
-    /// The configuration of WebTransport.
-    pub quic: ServerConfig,
-    /// SHA-256 of WebTransport's certificate in hexadecimal digits.
-    pub quic_hash: String,
 }
 
 impl Lan {
@@ -73,14 +58,8 @@ impl Lan {
         let folder = xdg::folder("XDG_STATE_HOME", ".local/state")
             .context("neither XDG_STATE_HOME nor HOME is an absolute path; set one of them")?
             .join("yoro/serve");
-        let [pem, quic_pem] = [certificate(&folder, address, &HTTPS)?, certificate(&folder, address, &QUIC)?];
-        Ok(Lan {
-            address,
-            tls: Arc::new(configure(&pem, b"http/1.1")?),
-            fingerprint: hash(&pem, ":")?,
-            quic: configure(&quic_pem, WEBTRANSPORT_ALPN)?,
-            quic_hash: hash(&quic_pem, "")?.to_lowercase(),
-        })
+        let pem = certificate(&folder, address, VALID)?;
+        Ok(Lan { address, tls: Arc::new(configure(&pem)?), fingerprint: fingerprint(&pem)? })
     }
 }
 
@@ -106,7 +85,7 @@ fn is_local(address: IpAddr) -> bool {
 
 /// Returns key and certificate for an address: those kept in the folder, or new ones, which are stored there. Only this
 /// user may read the key.
-fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Vec<u8>> {
+fn certificate(folder: &Path, address: IpAddr, valid: u32) -> anyhow::Result<Vec<u8>> {
     let unusable = || format!("{} cannot be used for the server's key", folder.display());
     DirBuilder::new().recursive(true).mode(0o700).create(folder).with_context(unusable)?;
     // A new file belongs to this user and nobody else can read it.
@@ -119,14 +98,14 @@ fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Ve
         folder.display()
     );
     fs::set_permissions(folder, fs::Permissions::from_mode(0o700)).with_context(unusable)?;
-    let path = folder.join(format!("{address}.{}", kind.suffix));
+    let path = folder.join(format!("{address}.pem"));
     // A link, or what another user has written or read, is replaced.
     let is_own = fs::symlink_metadata(&path)
         .is_ok_and(|data| data.is_file() && data.uid() == user && data.mode() & 0o077 == 0);
     if is_own
         && let Ok(pem) = fs::read(&path)
-        && configure(&pem, b"").is_ok()
-        && is_fresh(&pem, kind)
+        && configure(&pem).is_ok()
+        && is_fresh(&pem)
     {
         return Ok(pem);
     }
@@ -138,7 +117,7 @@ fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Ve
     let now = SystemTime::now();
     // The certificate is valid from yesterday on, because clocks differ.
     params.not_before = (now - DAY).into();
-    params.not_after = (now + (kind.valid - 1) * DAY).into();
+    params.not_after = (now + (valid - 1) * DAY).into();
     let pem = [key.serialize_pem(), params.self_signed(&key)?.pem()].concat().into_bytes();
     new.write_all(&pem).and_then(|()| new.as_file().sync_all()).with_context(unusable)?;
     new.persist(&path).map_err(|error| error.error).with_context(unusable)?;
@@ -146,17 +125,17 @@ fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Ve
 }
 
 /// True if a certificate is valid now, and will be for a while.
-fn is_fresh(pem: &[u8], kind: &Kind) -> bool {
+fn is_fresh(pem: &[u8]) -> bool {
     let Ok(der) = CertificateDer::from_pem_slice(pem) else { return false };
     let Ok((_, certificate)) = x509_parser::parse_x509_certificate(&der) else { return false };
     let left = certificate.validity().time_to_expiration();
-    let needed = (kind.valid - 1 - kind.used) * DAY;
+    let needed = (VALID - 1 - USED) * DAY;
     left.is_some_and(|left| left.whole_seconds() > needed.as_secs() as i64)
 }
 
-/// Returns the encryption of a protocol's connections with this key and certificate: TLS 1.3, which every browser
+/// Returns the encryption of connections with this key and certificate: TLS 1.3, which every browser
 /// supports that lets pages decode video.
-fn configure(pem: &[u8], protocol: &[u8]) -> anyhow::Result<ServerConfig> {
+fn configure(pem: &[u8]) -> anyhow::Result<ServerConfig> {
     let (Ok(key), Ok(certificate)) =
         (PrivateKeyDer::from_pem_slice(pem), CertificateDer::from_pem_slice(pem))
     else {
@@ -167,15 +146,15 @@ fn configure(pem: &[u8], protocol: &[u8]) -> anyhow::Result<ServerConfig> {
         .with_protocol_versions(&[&rustls::version::TLS13])?
         .with_no_client_auth()
         .with_single_cert(vec![certificate], key)?;
-    config.alpn_protocols = vec![protocol.to_vec()];
+    config.alpn_protocols = vec![b"http/1.1".to_vec()];
     Ok(config)
 }
 
-/// Returns the SHA-256 of a certificate in hexadecimal, with a separator between the bytes.
-fn hash(pem: &[u8], separator: &str) -> anyhow::Result<String> {
+/// Returns the SHA-256 of a certificate, formatted as in browsers.
+fn fingerprint(pem: &[u8]) -> anyhow::Result<String> {
     let certificate = CertificateDer::from_pem_slice(pem).context("the certificate cannot be read")?;
     let hash = ring::digest::digest(&ring::digest::SHA256, &certificate);
-    Ok(hash.as_ref().iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(separator))
+    Ok(hash.as_ref().iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(":"))
 }
 
 /// Returns a text as a QR code for terminals, black on white in any colour scheme.
@@ -207,24 +186,24 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("serve");
         let [here, there] = [[10, 0, 0, 1], [10, 0, 0, 2]].map(|octets: [u8; 4]| IpAddr::from(octets));
-        let first = certificate(&folder, here, &HTTPS).unwrap();
+        let first = certificate(&folder, here, VALID).unwrap();
         assert_eq!(fs::metadata(&folder).unwrap().permissions().mode() & 0o077, 0, "others read the key");
-        assert_eq!(certificate(&folder, here, &HTTPS).unwrap(), first);
+        assert_eq!(certificate(&folder, here, VALID).unwrap(), first);
         let file = folder.join("10.0.0.1.pem");
         assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "nothing else is left");
-        assert_ne!(certificate(&folder, there, &HTTPS).unwrap(), first);
+        assert_ne!(certificate(&folder, there, VALID).unwrap(), first);
         fs::write(&file, &first[..first.len() / 2]).unwrap();
-        let whole = certificate(&folder, here, &HTTPS).unwrap();
-        assert!(whole != first && configure(&whole, b"").is_ok());
+        let whole = certificate(&folder, here, VALID).unwrap();
+        assert!(whole != first && configure(&whole).is_ok());
         // What others can read, and what lies elsewhere, is replaced; the file elsewhere is not.
         fs::set_permissions(&file, fs::Permissions::from_mode(0o644)).unwrap();
-        let new = certificate(&folder, here, &HTTPS).unwrap();
+        let new = certificate(&folder, here, VALID).unwrap();
         assert!(new != whole && fs::metadata(&file).unwrap().mode() & 0o777 == 0o600);
         let elsewhere = folder.with_file_name("elsewhere.pem");
         fs::rename(&file, &elsewhere).unwrap();
         std::os::unix::fs::symlink(&elsewhere, &file).unwrap();
-        assert_ne!(certificate(&folder, here, &HTTPS).unwrap(), new);
+        assert_ne!(certificate(&folder, here, VALID).unwrap(), new);
         assert_eq!(fs::read(&elsewhere).unwrap(), new);
     }
 
@@ -233,13 +212,10 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let here = IpAddr::from([10, 0, 0, 1]);
         // Copies have any time of change.
-        let short = Kind { used: 3, ..QUIC };
-        let pem = certificate(dir.path(), here, &short).unwrap();
-        assert!(is_fresh(&pem, &short) && is_fresh(&pem, &QUIC));
-        assert!(!is_fresh(&pem, &Kind { used: 0, ..QUIC }), "less than thirteen days are left");
-        assert!(!is_fresh(b"none", &QUIC));
-        let ended = certificate(dir.path(), here, &Kind { suffix: "old", valid: 1, used: 0 }).unwrap();
-        assert!(!is_fresh(&ended, &QUIC));
+        let pem = certificate(dir.path(), here, VALID - USED).unwrap();
+        assert!(!is_fresh(&pem) && !is_fresh(b"none"));
+        let new = certificate(dir.path(), here, VALID).unwrap();
+        assert!(new != pem && is_fresh(&new));
     }
 
     #[test]

@@ -7,10 +7,9 @@ mod session;
 mod source;
 mod web_server;
 mod web_socket;
-mod web_transport;
 
 use std::io::{self, IsTerminal as _, Write as _};
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -65,9 +64,6 @@ pub struct ServeArgs {
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true, value_parser = address)]
     #[expect(clippy::option_option, reason = "clap's form of an option whose value may be left out")]
     lan: Option<Option<IpAddr>>,
-    /// Serve a page of this origin (https://HOST), too, to which the program prints a link
-    #[arg(long, value_name = "ORIGIN", requires = "lan", value_parser = access::origin)]
-    allow_origin: Option<String>,
     /// The port; 0 for a free one
     #[arg(long, default_value_t = 8080, value_parser = args::whole::<u16>(0..=u16::MAX), value_name = "N")]
     port: u16,
@@ -166,52 +162,24 @@ impl Subcommand for ServeArgs {
         };
         let hosts: Vec<String> = hosts.iter().map(|host| access::host(scheme, host).to_owned()).collect();
         let token_text = format!("{:032x}", u128::from_be_bytes(token));
-        let stream = match &lan {
-            Some(lan) => format!("{},{},{token_text}", hosts[0], lan.quic_hash),
-            None => token_text,
-        };
-        let own = format!("{scheme}://{}", hosts[0]);
-        let pages = std::iter::once(&own).chain(&self.allow_origin);
-        let links: Vec<String> =
-            pages.map(|page| format!("{page}/#stream={stream}&display=side-by-side")).collect();
-        let quic = match &lan {
-            Some(lan) => {
-                let place = SocketAddr::new(lan.address, port);
-                let socket = UdpSocket::bind(place).map_err(|error| refusal(place, &error))?;
-                Some((socket, lan.quic.clone()))
-            }
-            None => None,
-        };
-        announce(&links, port, lan.as_ref(), server.encoder.name())?;
-        let access = Access { token, scheme, hosts, origin: self.allow_origin.clone() };
+        let link = format!("{scheme}://{}/#stream={token_text}&display=side-by-side", hosts[0]);
+        announce(&link, port, lan.as_ref(), server.encoder.name())?;
+        let access = Access { token, scheme, hosts };
         let (lobby, clients) = Lobby::new(access, &welcome);
         let tls = lan.map(|lan| lan.tls.into());
-        connect(listener, quic, WebServer { lobby, folder, tls })?;
+        connect(listener, WebServer { lobby, folder, tls })?;
         server.serve(&clients)
     }
 }
 
-/// Serves all connections on a thread of their own. By UDP there is WebTransport, if that has a configuration.
-fn connect(
-    listener: TcpListener,
-    quic: Option<(UdpSocket, rustls::ServerConfig)>,
-    server: WebServer,
-) -> anyhow::Result<()> {
+/// Serves all connections on a thread of their own.
+fn connect(listener: TcpListener, server: WebServer) -> anyhow::Result<()> {
     let runtime = runtime::Builder::new_current_thread().enable_all().build()?;
     let inside = runtime.enter();
     listener.set_nonblocking(true)?;
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    let endpoint = quic.map(|(socket, tls)| web_transport::listen(socket, tls)).transpose()?;
     drop(inside);
-    thread::spawn(move || {
-        runtime.block_on(async {
-            let lobby = server.lobby.clone();
-            if let Some(endpoint) = endpoint {
-                tokio::spawn(async move { web_transport::accept(&endpoint, &lobby).await });
-            }
-            Arc::new(server).accept(listener).await;
-        });
-    });
+    thread::spawn(move || runtime.block_on(Arc::new(server).accept(listener)));
     Ok(())
 }
 
@@ -271,15 +239,13 @@ fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServ
 }
 
 /// Prints where the stream can be seen, and which encoder is used.
-fn announce(links: &[String], port: u16, lan: Option<&Lan>, encoder: &str) -> anyhow::Result<()> {
-    for link in links {
-        println!("open {link}");
-        if lan.is_some() && io::stdout().is_terminal() {
-            print!("{}", lan::code(link)?);
-        }
-    }
+fn announce(link: &str, port: u16, lan: Option<&Lan>, encoder: &str) -> anyhow::Result<()> {
+    println!("open {link}");
     match lan {
         Some(lan) => {
+            if io::stdout().is_terminal() {
+                print!("{}", lan::code(link)?);
+            }
             println!(
                 "a browser that has not been here warns that it does not know the certificate, with SHA-256\n{}\n\
                  docs/streaming.md says what to do then, and what it protects from",

@@ -9,7 +9,7 @@ use super::client::Client;
 use super::source::Source;
 use yoro_files::interrupt;
 use yoro_media::video::{LiveEncoder, LivePicture};
-use yoro_stream::{Delivery, FrameHeader, FromClient, FromServer, RateControl, ViewRequest};
+use yoro_stream::{FrameHeader, FromClient, FromServer, RateControl, ViewRequest};
 
 /// Renders, encodes and sends frames.
 pub struct Server {
@@ -38,7 +38,7 @@ impl Server {
         while !interrupt::requested() {
             match admitted.recv_timeout(Duration::from_millis(100)) {
                 Ok(client) => {
-                    println!("a client has connected by {}", client.transport.name());
+                    println!("a client has connected");
                     let ended = self.session(&client);
                     drop(client);
                     let reason = ended?.map_or(String::new(), |reason| format!(": {reason}"));
@@ -56,14 +56,13 @@ impl Server {
     /// # Errors
     /// If nobody can be served.
     fn session(&mut self, client: &Client) -> anyhow::Result<Option<String>> {
-        let Client { heard, transport, .. } = client;
-        let delivery = if transport.can_give_up() { Delivery::Independent } else { Delivery::InOrder };
-        let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate, delivery);
+        let Client { heard, frames, .. } = client;
+        let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate);
         let mut request: Option<ViewRequest> = None;
         // The time of the last answered request.
         let mut answered: Option<f64> = None;
         let mut number = 0u32;
-        let mut statistics = Statistics::new(0);
+        let mut statistics = Statistics::new();
         loop {
             if interrupt::requested() {
                 return Ok(None);
@@ -73,10 +72,6 @@ impl Server {
                     match message {
                         FromClient::Request(newest) => request = Some(newest),
                         FromClient::Report(report) => control.report(&report, at - self.start),
-                        FromClient::Missing(missing) => {
-                            log::info!("frame {missing} is missing");
-                            control.missing(missing);
-                        }
                         FromClient::Hello { .. } => {}
                     }
                     continue;
@@ -85,9 +80,7 @@ impl Server {
                 Err(RecvTimeoutError::Disconnected) => return Ok(None),
             }
             statistics.print(&control);
-            if control.gives_up(self.start.elapsed()) {
-                transport.give_up(number);
-            }
+            control.give_up_late(self.start.elapsed());
             let due = request
                 .filter(|request| Some(request.time_ms) != answered && control.is_due(self.start.elapsed()));
             let Some(mut request) = due else { continue };
@@ -108,7 +101,7 @@ impl Server {
             };
             answered = Some(request.time_ms);
             let rendered = begun.elapsed();
-            let intra = control.needs_intra() || picture.new_span;
+            let intra = number == 0 || picture.new_span;
             // Another quantizer for an intra frame would restart some encoders twice.
             let quantizer = control.quantizer(intra && self.encoder.changes_freely());
             let encoded = match self.encoder.encode(&picture.planes, quantizer, intra) {
@@ -127,11 +120,7 @@ impl Server {
             };
             let frame = FromServer::Frame { number, intra: is_intra, header, data: &data };
             control.sent(number, is_intra, (quantizer, data.len()), self.start.elapsed());
-            if is_intra {
-                // Frames before an intra frame are no longer needed.
-                transport.give_up(number);
-            }
-            if let Err(error) = transport.send(number, frame.to_bytes()) {
+            if let Err(error) = frames.send(frame.to_bytes()) {
                 return Ok(Some(error.to_string()));
             }
             statistics.add(data.len(), &header);
@@ -148,21 +137,12 @@ struct Statistics {
     quantizer: u8,
     render_ms: f32,
     encode_ms: f32,
-    /// The number of lost frames at the last printing.
-    lost: u32,
 }
 
 impl Statistics {
-    fn new(lost: u32) -> Statistics {
-        Statistics {
-            since: Instant::now(),
-            frames: 0,
-            bytes: 0,
-            quantizer: 0,
-            render_ms: 0.0,
-            encode_ms: 0.0,
-            lost,
-        }
+    fn new() -> Statistics {
+        let since = Instant::now();
+        Statistics { since, frames: 0, bytes: 0, quantizer: 0, render_ms: 0.0, encode_ms: 0.0 }
     }
 
     fn add(&mut self, bytes: usize, header: &FrameHeader) {
@@ -181,9 +161,8 @@ impl Statistics {
         if self.frames > 0 {
             let frames = self.frames as f32;
             println!(
-                "{:.0} frames/s, {} lost, {:.2} Mbit/s, quantizer {}, render {:.1} ms, encode {:.1} ms, sent and arrived {}",
+                "{:.0} frames/s, {:.2} Mbit/s, quantizer {}, render {:.1} ms, encode {:.1} ms, sent and arrived {}",
                 frames / seconds,
-                control.lost() - self.lost,
                 self.bytes as f32 * 8e-6 / seconds,
                 self.quantizer,
                 self.render_ms / frames,
@@ -191,6 +170,6 @@ impl Statistics {
                 control.round_trip().map_or("never".into(), |time| format!("after {} ms", time.as_millis()))
             );
         }
-        *self = Statistics::new(control.lost());
+        *self = Statistics::new();
     }
 }

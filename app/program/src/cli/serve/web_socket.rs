@@ -17,7 +17,7 @@ use tokio_tungstenite::tungstenite::handshake::server::create_response_with_body
 use tokio_tungstenite::tungstenite::protocol::{Role, WebSocketConfig};
 use tokio_tungstenite::tungstenite::{self, Message};
 
-use super::client::{Lobby, MAX_MESSAGE_BYTES, SILENCE, Seat, Transport};
+use super::client::{Lobby, MAX_MESSAGE_BYTES, SILENCE, Seat};
 use yoro_stream::FromClient;
 
 type Socket = WebSocketStream<TokioIo<Upgraded>>;
@@ -40,7 +40,7 @@ pub fn accept<B>(
         match admitted.map_err(anyhow::Error::from).flatten() {
             Ok((socket, seat)) => {
                 let (send, frames) = frames::channel(1);
-                let heard = lobby.admit(Box::new(Frames(send)), seat);
+                let heard = lobby.admit(Frames(send), seat);
                 serve(socket, frames, heard).await;
             }
             Err(error) => log::info!("a client is not served: {error}"),
@@ -115,14 +115,14 @@ async fn serve(
 }
 
 /// Sends frames to a client, one after the other.
-struct Frames(frames::Sender<Vec<u8>>);
+pub struct Frames(frames::Sender<Vec<u8>>);
 
-impl Transport for Frames {
-    fn name(&self) -> &'static str {
-        "WebSocket"
-    }
-
-    fn send(&self, _number: u32, bytes: Vec<u8>) -> anyhow::Result<()> {
+impl Frames {
+    /// Sends a frame. May wait while earlier frames are sent.
+    ///
+    /// # Errors
+    /// If the client is gone.
+    pub fn send(&self, bytes: Vec<u8>) -> anyhow::Result<()> {
         self.0.blocking_send(bytes).ok().context("it takes no frames")
     }
 }

@@ -43,21 +43,12 @@ const REQUESTED_WEIGHT: f64 = 0.1;
 const PAUSE: f64 = 1.0;
 /// The most frames that have arrived and are not decoded yet.
 const MAX_UNDECODED: usize = 4;
-/// If nothing arrives of what is on its way for this long, all of it is given up. The time doubles with each round that is given up, up to the
-/// longest, until a frame arrives.
+/// If nothing arrives of what is on its way for this long, it is not waited for any more. The time doubles with each round
+/// that is given up, up to the longest, until a frame arrives.
 const GIVE_UP_TIMEOUT: Duration = Duration::from_millis(500);
 const MAX_TIMEOUT: Duration = Duration::from_secs(4);
 /// The most frames that are remembered.
 const MAX_REMEMBERED: usize = 256;
-
-/// How frames get to a client.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Delivery {
-    /// Each on its own, so that late ones can be given up (WebTransport).
-    Independent,
-    /// All in order, none is lost (WebSocket).
-    InOrder,
-}
 
 /// A frame that was sent.
 #[derive(Clone, Copy, Debug)]
@@ -82,7 +73,6 @@ struct Sent {
 pub struct RateControl {
     interval: f64,
     min_quantizer: u8,
-    delivery: Delivery,
     trend: Trend,
     rate: Rate,
     /// The usual time in s from a frame to the next if nothing but requests and the frame rate limits them.
@@ -108,23 +98,18 @@ pub struct RateControl {
     quantizer: f64,
     /// The usual bytes of a frame.
     usual: Option<f64>,
-    /// The number of the last intra frame.
-    intra: u32,
-    needs_intra: bool,
     decoded: Option<u32>,
     /// When a frame was last known to have arrived or to be decoded, in s.
     progress: f64,
     give_up: Duration,
-    lost: u32,
 }
 
 impl RateControl {
     /// Starts with coarse pictures, which become finer up to `min_quantizer`, at most about `frame_rate` a second.
-    pub fn new(min_quantizer: u8, frame_rate: f32, delivery: Delivery) -> RateControl {
+    pub fn new(min_quantizer: u8, frame_rate: f32) -> RateControl {
         RateControl {
             interval: f64::from(1.0 / (RATE_HEADROOM * frame_rate)),
             min_quantizer,
-            delivery,
             trend: Trend::new(1e3 / f64::from(frame_rate)),
             rate: Rate::default(),
             requested: f64::from(1.0 / (RATE_HEADROOM * frame_rate)),
@@ -140,12 +125,9 @@ impl RateControl {
             sizes: [None; 2],
             quantizer: f64::from(MAX_QUANTIZER.max(min_quantizer)),
             usual: None,
-            intra: 0,
-            needs_intra: true,
             decoded: None,
             progress: 0.0,
             give_up: GIVE_UP_TIMEOUT,
-            lost: 0,
         }
     }
 
@@ -178,7 +160,7 @@ impl RateControl {
             return (false, false);
         }
         let slack = (SLACK + NOISE * self.trend.noise * 1e-3).min(MAX_SLACK);
-        let expected = self.expected(self.needs_intra);
+        let expected = self.expected(false);
         let rate = self.rate.bytes_per_second;
         // A frame that takes longer than its interval waits for itself long enough.
         let slack = (slack - (expected / rate - self.interval).max(0.0)).max(0.0);
@@ -209,22 +191,9 @@ impl RateControl {
         self.round_trip
     }
 
-    /// True if the next frame must be an intra frame.
-    pub fn needs_intra(&self) -> bool {
-        self.needs_intra
-    }
-
-    /// Returns the number of frames that the client could not decode or that were given up.
-    pub fn lost(&self) -> u32 {
-        self.lost
-    }
-
     /// Records that a frame with this quantizer and number of bytes was handed to the transport.
     pub fn sent(&mut self, number: u32, is_intra: bool, (quantizer, bytes): (u8, usize), now: Duration) {
         let (now, bytes) = (now.as_secs_f64(), bytes as f64);
-        if is_intra {
-            (self.intra, self.needs_intra) = (number, false);
-        }
         if let Some(last) = self.frames.back() {
             let passed = now - last.time;
             // It was due, but was not made at once.
@@ -316,46 +285,19 @@ impl RateControl {
         self.rate.follow(queue, self.trend.is_stalled(), is_full, round_trip, now);
     }
 
-    /// Records that the client misses a frame, without which it cannot decode any before the next intra frame.
-    pub fn missing(&mut self, number: u32) {
-        if number >= self.intra
-            && self.frames.iter().any(|frame| frame.number >= number && !frame.is_given_up)
-        {
-            self.drop_from(number);
-            self.needs_intra = true;
-        }
-    }
-
-    /// True if nothing has arrived for so long that the frames on their way are given up. If each comes on its own, all of
-    /// them are useless then, since the next frame is an intra frame. Otherwise one more is sent, whatever has become of
-    /// them.
-    pub fn gives_up(&mut self, now: Duration) -> bool {
-        let Some(oldest) = self.frames.iter().find(|frame| !frame.is_given_up) else { return false };
+    /// Stops waiting for the frames on their way if nothing has arrived for long: one more is sent, whatever has become
+    /// of them.
+    pub fn give_up_late(&mut self, now: Duration) {
+        let Some(oldest) = self.frames.iter().find(|frame| !frame.is_given_up) else { return };
         let now = now.as_secs_f64();
         let silence = now - self.progress.max(oldest.time);
         if silence < self.give_up.as_secs_f64() {
-            return false;
+            return;
         }
         self.give_up = (2 * self.give_up).min(MAX_TIMEOUT);
         self.rate.give_up(silence, now);
         self.trend.forget();
-        match self.delivery {
-            Delivery::Independent => {
-                self.drop_from(0);
-                self.needs_intra = true;
-            }
-            Delivery::InOrder => self.frames.iter_mut().for_each(|frame| frame.is_given_up = true),
-        }
-        true
-    }
-
-    /// Gives up all frames on their way, and counts those from `number` on as lost.
-    fn drop_from(&mut self, number: u32) {
-        let waited_for = self.frames.iter_mut().filter(|frame| !frame.is_given_up);
-        for frame in waited_for {
-            self.lost = self.lost.saturating_add(u32::from(frame.number >= number));
-            frame.is_given_up = true;
-        }
+        self.frames.iter_mut().for_each(|frame| frame.is_given_up = true);
     }
 
     fn bytes_in_flight(&self) -> f64 {

@@ -1,11 +1,9 @@
 //! The interface of a stream for JavaScript, which owns the connection and the decoder.
 
-use std::time::Duration;
-
-use js_sys::{ArrayBuffer, Uint8Array};
+use js_sys::Uint8Array;
 use wasm_bindgen::prelude::*;
 use yoro::eyes::Pose;
-use yoro_stream::{Correction, DecodedPicture, FromClient, FromServer, Refusal, ReorderBuffer, Report};
+use yoro_stream::{Correction, DecodedPicture, FromClient, FromServer, Refusal, Report};
 
 use super::error::sentence;
 use super::stream_show::StreamShow;
@@ -114,52 +112,31 @@ impl Page {
     }
 }
 
-/// Puts the frames of a connection in order, and reports what has become of them. Frames are messages whose content only
-/// the page knows.
+/// Reports what has become of a connection's frames.
 #[wasm_bindgen]
 #[derive(Default)]
-pub struct StreamOrder {
-    buffer: ReorderBuffer<ArrayBuffer>,
-    report: Report,
-}
+pub struct StreamReport(Report);
 
 #[wasm_bindgen]
-impl StreamOrder {
-    /// Creates a buffer that begins with frame 0.
+impl StreamReport {
+    /// Creates the report of a new connection.
     #[wasm_bindgen(constructor)]
-    pub fn new() -> StreamOrder {
-        StreamOrder::default()
+    pub fn new() -> StreamReport {
+        StreamReport::default()
     }
 
-    /// Adds a frame that has arrived at `time` in ms.
-    pub fn insert(&mut self, number: u32, intra: bool, frame: ArrayBuffer, time: f64) {
-        self.report.arrived(number, time);
-        self.buffer.insert(number, intra, frame);
+    /// Notes that a frame has arrived at `time` in ms.
+    pub fn arrived(&mut self, number: u32, time: f64) {
+        self.0.arrived(number, time);
     }
 
     /// Notes that a frame was decoded.
     pub fn decoded(&mut self, number: u32) {
-        self.report.decoded = self.report.decoded.max(Some(number));
+        self.0.decoded = self.0.decoded.max(Some(number));
     }
 
-    /// Returns the message that reports the newest frames.
-    pub fn report(&self) -> Vec<u8> {
-        FromClient::Report(self.report).to_bytes()
-    }
-
-    /// Returns the next frame to decode; none if it has not arrived.
-    pub fn pop(&mut self) -> Option<ArrayBuffer> {
-        self.buffer.pop()
-    }
-
-    /// Returns the message that reports a missing frame, if one is due at `time` in ms.
-    pub fn missing(&mut self, time: f64) -> Option<Vec<u8>> {
-        let number = self.buffer.missing(Duration::from_secs_f64(time * 1e-3))?;
-        Some(FromClient::Missing(number).to_bytes())
-    }
-
-    /// Returns the number of frames that were not decoded.
-    pub fn lost(&self) -> u32 {
-        self.buffer.lost()
+    /// Returns the message.
+    pub fn message(&self) -> Vec<u8> {
+        FromClient::Report(self.0).to_bytes()
     }
 }
