@@ -19,7 +19,6 @@ use yoro_metrics::{Channels, psnr};
 use yoro_stream::{EyeView, FromClient, FromServer, Report, VERSION, ViewRequest};
 
 use crate::program::{run, succeed, yoro};
-use crate::web::video::record3d;
 
 /// A server, which is killed when this is dropped.
 struct Serving {
@@ -199,9 +198,8 @@ fn videos_with_asymmetric_eyes_are_streamed() {
         at,
         "render prototype --frames 1 --size 64x48 --half-angles-degrees 35,47 --video narrow.mp4 --quantizer 12",
     );
-    record3d(&at.join("phone.mp4"));
     let headless = Headless::open(Backend::Egl).unwrap();
-    for name in ["wide.mp4", "narrow.mp4", "phone.mp4"] {
+    for name in ["wide.mp4", "narrow.mp4"] {
         let serving = Serving::start(at, name);
         let (mut socket, answer) = serving.connect();
         let Some(FromServer::Video(frusta, eye)) = FromServer::read(&answer) else { panic!("{name}") };

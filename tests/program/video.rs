@@ -3,7 +3,7 @@
 use std::fs;
 
 use image::{RgbImage, imageops};
-use yoro_media::video::{Format, Planes, Reader, VideoError};
+use yoro_media::video::{Reader, VideoError};
 use yoro_metrics::{Channels, psnr};
 
 use crate::program::{run, succeed};
@@ -62,73 +62,6 @@ fn eyes_with_asymmetric_frusta_come_out_of_an_rgbd_video() {
         println!("{name}: left {of_left:.1} dB, right {of_right:.1} dB, the same image {same:.1} dB");
         assert!(of_left.min(of_right) > 24.0 && of_left.min(of_right) > same + 5.0, "{name}");
         assert!(of_left.max(of_right) > 34.0, "{name}");
-    }
-}
-
-/// A file in the format of the iPhone application Record3D: depth as hue on the left, the camera in the metadata. It is
-/// made from a video of this program whose eye is not widened, since no recording of a phone was available. The camera's
-/// axis is not in the middle: the leftmost columns are left out.
-#[test]
-fn a_video_of_record3d_becomes_stereo() {
-    const CUT: u32 = 20;
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
-    let scene = "render prototype --frames 2 --size 128x96";
-    succeed(at, &format!("{scene} --video rgbd.mp4 --quantizer 12 --guard-band none"));
-    let mut reader = Reader::open(&at.join("rgbd.mp4")).unwrap();
-    let rgbd = reader.rgbd().unwrap();
-    assert_eq!(rgbd.guard_columns, 0);
-    // Anything farther is stored as the farthest distance.
-    const RANGE: f32 = 6.0;
-    let hue = |depth: u8| {
-        let share = f32::from(depth) / 255.0;
-        let distance = 1.0 / (share / rgbd.nearest + (1.0 - share) / rgbd.farthest);
-        let sixths = 6.0 * distance.min(0.97 * RANGE) / RANGE;
-        let channel = |n: f32| {
-            let k = (n + sixths) % 6.0;
-            (255.0 * (1.0 - k.min(4.0 - k).clamp(0.0, 1.0))) as u8
-        };
-        image::Rgb([channel(5.0), channel(3.0), channel(1.0)])
-    };
-    let format = Format { frame_rate: 30, quantizer: 12, durations: None, frames: 2, rgbd: None };
-    yoro_media::video::write(&at.join("phone.mp4"), &format, || -> Result<Option<Planes>, VideoError> {
-        Ok(reader.read_rgbd()?.map(|(color, depth)| {
-            let hues = RgbImage::from_fn(128, 96, |x, y| hue(depth.get_pixel(x, y).0[0]));
-            let cut = |image: &RgbImage| imageops::crop_imm(image, CUT, 0, 128 - CUT, 96).to_image();
-            Planes::of_rgb(&cut(&hues)).beside(&Planes::of_rgb(&cut(&color)))
-        }))
-    })
-    .unwrap();
-    let focal = 48.0 / (rgbd.fov_y / 2.0).tan();
-    let file = fs::read(at.join("phone.mp4")).unwrap();
-    let camera = format!(
-        r#"{{"intrinsicMatrix":[{focal},0,0,0,{focal},0,{},48,1],"rangeOfEncodedDepth":[0,{RANGE}]}}"#,
-        64 - CUT
-    );
-    let size = (camera.len() as u32 + 8).to_be_bytes();
-    fs::write(at.join("phone.mp4"), [&file[..], &size, b"meta", camera.as_bytes()].concat()).unwrap();
-
-    succeed(at, &format!("{scene} --method conventional --outputs left,right --out truth"));
-    let stereo = ["phone", "rgbd"].map(|name| {
-        succeed(at, &format!("synthesize {name}.mp4 --out {name}.stereo.mp4 --quantizer 12"));
-        Reader::open(&at.join(format!("{name}.stereo.mp4"))).unwrap()
-    });
-    let [mut phone, mut own] = stereo;
-    for frame in 0..2 {
-        let [left, right] = ["left", "right"].map(|eye| {
-            yoro_media::load_color(&at.join(format!("truth/prototype-{frame:04}.{eye}.png"))).unwrap()
-        });
-        // What both show of the left eye.
-        let columns = 128 - CUT;
-        let cut = |image: &RgbImage, from: u32| imageops::crop_imm(image, from, 0, columns, 96).to_image();
-        let phone = cut(&phone.read().unwrap().unwrap().rgb((2 * columns, 96)), 0);
-        let own = cut(&own.read().unwrap().unwrap().rgb((256, 96)), CUT);
-        let [value, own, same] = [phone, own, cut(&right, CUT)]
-            .map(|image| psnr(&image, &cut(&left, CUT), Channels::Luma).unwrap().0);
-        let what =
-            format!("frame {frame}: {value:.1} dB, {own:.1} dB by luma, {same:.1} dB for the same image");
-        println!("{what}");
-        assert!(value > same + 1.0, "{what}");
     }
 }
 

@@ -22,7 +22,7 @@ use yoro_bench::streaming::Receiver;
 use yoro_context::{Backend, Headless};
 use yoro_files::http::{self, Request};
 use yoro_media::rgb_image;
-use yoro_media::video::{LiveEncoder, LiveEncoderKind, Planes};
+use yoro_media::video::{LiveEncoder, Planes};
 use yoro_metrics::{Channels, psnr};
 use yoro_render::{PreparedScene, RenderSettings, ViewReader};
 use yoro_stream::{
@@ -470,7 +470,7 @@ fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<Said>) -> Option<()>
             quantizer: 24,
         };
         let picture = Planes::of_gray(&image::GrayImage::new(128, 64));
-        let mut encoder = LiveEncoder::new(LiveEncoderKind::OpenH264, 5.0).unwrap();
+        let mut encoder = LiveEncoder::new(5.0).unwrap();
         let [first, second] = [0, 1].map(|number| {
             let intra = number == 0;
             let data = &encoder.encode(&picture, 24, intra).unwrap().data;

@@ -112,34 +112,6 @@ fn ramp(path: &std::path::Path) {
     yoro_media::video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
 }
 
-/// Width and height of a phone's pictures in pixels.
-const PHONE: [u32; 2] = [192, 128];
-
-/// Writes a video in Record3D's format: stripes in front of a grid, with depth as hue.
-pub fn record3d(path: &std::path::Path) {
-    let is_near = |x: u32| (64..128).contains(&x);
-    let hues = RgbImage::from_fn(PHONE[0], PHONE[1], |x, _| {
-        let sixths = if is_near(x) { 2.0 } else { 4.5f32 };
-        let channel = |n: f32| {
-            let k = (n + sixths) % 6.0;
-            (255.0 * (1.0 - k.min(4.0 - k).clamp(0.0, 1.0))).round() as u8
-        };
-        Rgb([channel(5.0), channel(3.0), channel(1.0)])
-    });
-    let color = RgbImage::from_fn(PHONE[0], PHONE[1], |x, y| {
-        let shade = if is_near(x) { x / 8 % 2 * 120 + 60 } else { (x / 12 + y / 12) % 2 * 200 + 20 };
-        Rgb([shade as u8; 3])
-    });
-    let mut pictures = [Planes::of_rgb(&hues).beside(&Planes::of_rgb(&color))].into_iter();
-    let format = Format { frame_rate: 2, quantizer: 12, durations: None, frames: 1, rgbd: None };
-    yoro_media::video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
-    // Focal length and centre in pixels, which is not the middle. Hues represent up to 3 m.
-    let camera = r#"{"intrinsicMatrix":[150,0,0,0,150,0,80.5,60,1],"rangeOfEncodedDepth":[0,3]}"#;
-    let length = (camera.len() as u32 + 8).to_be_bytes();
-    let file = fs::read(path).unwrap();
-    fs::write(path, [&file[..], &length, b"meta", camera.as_bytes()].concat()).unwrap();
-}
-
 #[test]
 fn pictures_come_as_planes_or_as_the_browser_has_them_and_every_shade_is_exact() {
     let Some(mut page) = Page::open("#display=side-by-side", None) else { return };
@@ -179,25 +151,6 @@ fn pictures_come_as_planes_or_as_the_browser_has_them_and_every_shade_is_exact()
         let worst = planes.iter().zip(frame).map(|(a, b)| a.abs_diff(b)).max();
         assert!(worst <= Some(2), "{planes:?} as planes, {frame:?} as the browser has it");
     }
-    // Record3D stores depth as hue.
-    let phone = dir.path().join("phone.mp4");
-    record3d(&phone);
-    page.drop_files(&[("phone.mp4", fs::read(&phone).unwrap())]);
-    page.until("document.getElementById('facts').textContent === 'phone.mp4' && yoro.stream?.frames > 0");
-    let here = page.eyes([PHONE[0], PHONE[1]]);
-    succeed(dir.path(), "synthesize phone.mp4 --out stereo.mp4");
-    let mut reader = yoro_media::video::Reader::open(&dir.path().join("stereo.mp4")).unwrap();
-    let stereo = reader.read().unwrap().unwrap().rgb((2 * PHONE[0], PHONE[1]));
-    let [left, right] = [0, 1].map(|eye| {
-        let crop = |image: &RgbImage, x: u32| {
-            imageops::crop_imm(image, x + 8, 8, PHONE[0] - 16, PHONE[1] - 16).to_image()
-        };
-        let desktop = crop(&stereo, eye * PHONE[0]);
-        psnr(&crop(&here[eye as usize], 0), &desktop, Channels::Luma).unwrap().0
-    });
-    let same = psnr(&here[0], &here[1], Channels::Luma).unwrap().0;
-    eprintln!("left {left:.1} dB, right {right:.1} dB, both against another {same:.1} dB");
-    assert!(left > 28.0 && right > 30.0 && same < 24.0, "{left} dB, {right} dB, {same} dB");
     assert_eq!((page.message(), page.evaluate("yoro.page.takeErrors() ?? null")), (None, json!(null)));
     page.browser.expect_silence();
 }

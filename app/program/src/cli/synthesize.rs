@@ -49,7 +49,7 @@ pub enum SourceEye {
 /// Synthesize the other eye from a colour image and a depth image, from folders of them, or of an RGBD video
 #[derive(clap::Args, Clone, Debug)]
 pub struct SynthesizeArgs {
-    /// An RGBD video from `yoro render --video` or Record3D; --out is then a video of both eyes side by side
+    /// An RGBD video from `yoro render --video`; --out is then a video of both eyes side by side
     #[arg(conflicts_with_all = ["color", "depth", "dominant", "depth_encoding", "depth_gamma", "near", "far", "metres_at_white",
         "disparity_offset", "disparity_scale", "fov_y", "ipd", "mask_out", "disparity_out", "source_out", "patcher"])]
     video: Option<PathBuf>,

@@ -20,8 +20,6 @@ let latest = -1;
 /** The newest decoded frame, if the page is still busy with the previous one. */
 let newest = null;
 let pageIsFree = true;
-/** Converts a picture's planes for the page. @type {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} */
-let pack = null;
 /** Is told each picture that is decoded. @type {(number: number) => void} */
 let told = () => {};
 let bytes = 0;
@@ -40,11 +38,9 @@ export function count(more) {
  * Starts a decoder.
  * @param {VideoDecoderConfig} config
  * @param {() => void} failed called if the decoder fails after having worked
- * @param {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} convert converts the planes of each picture
  * @param {(number: number) => void} done called for each picture that is decoded
  */
-export function start(config, failed, convert = null, done = () => {}) {
-  pack = convert;
+export function start(config, failed, done = () => {}) {
   told = done;
   headers.clear();
   pictures = 0;
@@ -115,7 +111,7 @@ async function decoded(frame) {
   }
   const start = performance.now();
   // Some pictures can only be passed in one way.
-  const only = pack ? 'planes' : ['I420', 'NV12'].includes(frame.format) ? way : 'frame';
+  const only = ['I420', 'NV12'].includes(frame.format) ? way : 'frame';
   const picture = { number: frame.timestamp, head, way: only ?? WAYS[pictures % 2], isTimed: !only };
   if (picture.way === 'frame') {
     put({ ...picture, frame, ms: 0 });
@@ -123,7 +119,7 @@ async function decoded(frame) {
   }
   try {
     const planes = await copied(frame);
-    put({ ...picture, planes: pack ? pack(planes) : planes, ms: performance.now() - start });
+    put({ ...picture, planes, ms: performance.now() - start });
   } catch (error) {
     postMessage({ fault: error.message });
   } finally {

@@ -78,7 +78,7 @@ function decode(message) {
   send(report.message());
   if (!decoding.isStarted()) {
     const own = report;
-    decoding.start({ codec: CODEC, optimizeForLatency: true }, () => connection?.close(), null, (done) => own.decoded(done));
+    decoding.start({ codec: CODEC, optimizeForLatency: true }, () => connection?.close(), (done) => own.decoded(done));
   }
   decoding.decode(number, intra, new Uint8Array(message.slice(0, PREFIX + length)), new Uint8Array(message, PREFIX + length));
 }

@@ -36,10 +36,9 @@ async function play(file) {
   const video = new Video(file.name, file.size, (position, length) => part(file, position, length));
   const pictures = video.pictures();
   const count = pictures.length / NUMBERS;
-  const pack = video.hasHues() ? (planes) => video.packed(planes) : null;
   postMessage({ answer: video.welcome() });
   const config = { codec: video.codec(), description: video.description(), optimizeForLatency: true };
-  const begin = () => decoding.start(config, () => postMessage({ fault: 'The browser’s decoder has given up: drop the video again.' }), pack);
+  const begin = () => decoding.start(config, () => postMessage({ fault: 'The browser’s decoder has given up: drop the video again.' }));
   begin();
   for (let number = 0, start = performance.now(); ; number += 1) {
     const at = (number % count) * NUMBERS;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use js_sys::{Function, Uint8Array};
 use wasm_bindgen::prelude::*;
-use yoro_media::video::{Index, Planes, Rgbd, VideoError};
+use yoro_media::video::{Index, Rgbd, VideoError};
 use yoro_stream::{Content, EyeView, FrameHeader, FromServer};
 
 /// An RGBD video file.
@@ -76,25 +76,6 @@ impl Video {
             ));
         }
         Ok(video)
-    }
-
-    /// True if decoded pictures have to be [packed](Video::packed).
-    #[wasm_bindgen(js_name = hasHues)]
-    pub fn has_hues(&self) -> bool {
-        self.index.has_hues()
-    }
-
-    /// Returns a decoded picture, three planes one after another, in the layout of a stream's pictures; empty if it is
-    /// of another size.
-    pub fn packed(&self, planes: &[u8]) -> Vec<u8> {
-        let [width, height] = self.rgbd.size.map(|n| n as usize);
-        let (size, luma) = ([2 * width, height], 2 * width * height);
-        if planes.len() != luma * 3 / 2 || !width.is_multiple_of(2) || !height.is_multiple_of(2) {
-            return Vec::new();
-        }
-        let (y, rest) = planes.split_at(luma);
-        let (u, v) = rest.split_at(luma / 4);
-        self.index.packed(Planes { size, planes: [y, u, v].map(<[u8]>::to_vec) }).planes.concat()
     }
 
     /// Returns the codec's name in the form that the browser's decoder takes.

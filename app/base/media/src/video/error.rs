@@ -20,10 +20,7 @@ pub enum VideoError {
         what: String,
     },
     /// The video has no depth.
-    #[error(
-        "{} has no depth: give a file that `yoro render --video` or Record3D has written",
-        path.display()
-    )]
+    #[error("{} has no depth: give a file that `yoro render --video` has written", path.display())]
     NoDepth {
         /// The file.
         path: PathBuf,

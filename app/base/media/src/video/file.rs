@@ -286,15 +286,7 @@ impl Reader {
     /// Those of [`Reader::read`], and [`VideoError::NoDepth`] for an ordinary video.
     pub fn read_rgbd(&mut self) -> Result<Option<(RgbImage, GrayImage)>, VideoError> {
         let rgbd = self.rgbd()?;
-        Ok(self.read_packed()?.map(|picture| rgbd.unpack(&picture)))
-    }
-
-    /// Returns the next picture in the layout of [`Rgbd::pack`], or `None` after the last.
-    ///
-    /// # Errors
-    /// Those of [`Reader::read`].
-    pub fn read_packed(&mut self) -> Result<Option<Planes>, VideoError> {
-        Ok(self.read()?.map(|picture| self.index.packed(picture)))
+        Ok(self.read()?.map(|picture| rgbd.unpack(&picture)))
     }
 
     /// Returns for how long the picture that was read last is shown, in seconds; 0 before the first.

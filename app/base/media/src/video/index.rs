@@ -13,8 +13,7 @@ use shiguredo_mp4::{bitstream::h264::LengthSize, boxes::AvccBox};
 
 use yoro_files::FileError;
 
-use super::record3d::{self, Recording};
-use super::{DEPTH_BOX, Planes, Rgbd, VideoError};
+use super::{DEPTH_BOX, Rgbd, VideoError};
 
 /// The index of an MP4 file with H.264 video.
 pub struct Index {
@@ -25,16 +24,8 @@ pub struct Index {
     pub frame_rate: u32,
     /// For how long each picture is shown, in seconds, in the order in which they are shown.
     pub durations: Vec<f64>,
-    depth: Option<Depth>,
+    depth: Option<Rgbd>,
     entry: Box<Avc1Box>,
-}
-
-/// The kind of depth that a video has.
-enum Depth {
-    /// Luma, as [`Rgbd::pack`] writes it.
-    Luma(Rgbd),
-    /// Hue, as the application Record3D writes it.
-    Hue(Recording),
 }
 
 /// The location of an encoded picture in a file.
@@ -131,22 +122,15 @@ impl Index {
         })?;
         let durations = sort(&mut pictures, &times)
             .ok_or_else(|| VideoError::format(path, "its pictures are not in an order of H.264"))?;
-        let size = [entry.visual.width, entry.visual.height].map(u32::from);
-        let depth = match rgbd(path, &entry)? {
-            Some(rgbd) => {
-                let ([w, h], [width, height]) = (size, rgbd.coded());
-                if [w as usize, h as usize] != [width, height] {
-                    let what =
-                        format!("it has {w}x{h} pixels, and its depth is described for {width}x{height}");
-                    return Err(VideoError::format(path, what));
-                }
-                Some(Depth::Luma(rgbd))
+        let depth = rgbd(path, &entry)?;
+        if let Some(rgbd) = &depth {
+            let (w, h) = (usize::from(entry.visual.width), usize::from(entry.visual.height));
+            let [width, height] = rgbd.coded();
+            if [w, h] != [width, height] {
+                let what = format!("it has {w}x{h} pixels, and its depth is described for {width}x{height}");
+                return Err(VideoError::format(path, what));
             }
-            None => {
-                let recording = record3d::find(file, length, size).map_err(failed)?.transpose();
-                recording.map_err(|what| VideoError::format(path, what))?.map(Depth::Hue)
-            }
-        };
+        }
         Ok(Index { path: path.into(), pictures, frame_rate, durations, depth, entry })
     }
 
@@ -155,23 +139,7 @@ impl Index {
     /// # Errors
     /// [`VideoError::NoDepth`] for an ordinary video.
     pub fn rgbd(&self) -> Result<Rgbd, VideoError> {
-        match self.depth {
-            Some(Depth::Luma(rgbd) | Depth::Hue(Recording { rgbd, .. })) => Ok(rgbd),
-            None => Err(VideoError::NoDepth { path: self.path.clone() }),
-        }
-    }
-
-    /// True if the pictures have to be [packed](Index::packed) after decoding.
-    pub fn has_hues(&self) -> bool {
-        matches!(self.depth, Some(Depth::Hue(_)))
-    }
-
-    /// Returns a decoded picture in the layout of [`Rgbd::pack`].
-    pub fn packed(&self, picture: Planes) -> Planes {
-        match &self.depth {
-            Some(Depth::Hue(recording)) => recording.packed(&picture),
-            _ => picture,
-        }
+        self.depth.ok_or_else(|| VideoError::NoDepth { path: self.path.clone() })
     }
 
     /// Returns the codec's name in the form that browsers take: `avc1.42C01F`.

@@ -5,27 +5,18 @@
 
 mod error;
 #[cfg(feature = "codec")]
-mod ffmpeg;
-#[cfg(feature = "codec")]
 mod file;
 mod index;
 #[cfg(feature = "codec")]
-mod live;
-#[cfg(feature = "codec")]
 mod openh264;
 mod planes;
-mod record3d;
 mod rgbd;
 
 pub use error::VideoError;
 #[cfg(feature = "codec")]
-pub use ffmpeg::FfmpegEncoder;
-#[cfg(feature = "codec")]
 pub use file::{Format, Reader, write};
 pub use index::{EncodedPicture, Index};
 #[cfg(feature = "codec")]
-pub use live::{LiveEncoder, LiveEncoderKind, LivePicture};
-#[cfg(feature = "codec")]
-pub use openh264::{Decoder, Encoder, FINEST_QUANTIZER, fits};
+pub use openh264::{Decoder, Encoder, FINEST_QUANTIZER, LiveEncoder, LivePicture, fits};
 pub use planes::Planes;
 pub use rgbd::{DEPTH_BOX, Rgbd, depth_luma};

@@ -7,7 +7,7 @@ use openh264::encoder::{
 use openh264::formats::{YUVSlices, YUVSource};
 use openh264_sys2::{ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, SEncParamExt};
 
-use super::{LivePicture, Planes, VideoError};
+use super::{Planes, VideoError};
 
 /// The finest quantizer of [`Encoder`]: below it, openh264 takes another one.
 pub const FINEST_QUANTIZER: u8 = 12;
@@ -48,21 +48,37 @@ impl Encoder {
     }
 }
 
-/// An openh264 encoder whose quantizer and size may change from picture to picture.
-pub struct LiveOpenH264 {
+/// A picture of a live stream.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LivePicture {
+    /// The picture in the format of Annex B.
+    pub data: Vec<u8>,
+    /// True if it is an intra frame.
+    pub is_intra: bool,
+}
+
+/// An H.264 encoder whose quantizer and size may change from picture to picture.
+pub struct LiveEncoder {
     encoder: openh264::encoder::Encoder,
     quantizer: u8,
     size: [usize; 2],
 }
 
-impl LiveOpenH264 {
-    pub(super) fn new(frame_rate: f32) -> Result<LiveOpenH264, VideoError> {
+impl LiveEncoder {
+    /// Starts an encoder for at most `frame_rate` pictures per second.
+    ///
+    /// # Errors
+    /// [`VideoError::Codec`].
+    pub fn new(frame_rate: f32) -> Result<LiveEncoder, VideoError> {
         let encoder = start(config(RateControlMode::Off, frame_rate))?;
-        Ok(LiveOpenH264 { encoder, quantizer: 0, size: [0, 0] })
+        Ok(LiveEncoder { encoder, quantizer: 0, size: [0, 0] })
     }
 
-    /// Encodes the next picture with `quantizer`; an intra frame if `intra` is set or its size has changed.
-    pub(super) fn encode(
+    /// Encodes the next picture with `quantizer` (QP, 0 to 51); an intra frame if `intra` is set or its size has changed.
+    ///
+    /// # Errors
+    /// [`VideoError::Codec`] if the picture is too large.
+    pub fn encode(
         &mut self,
         picture: &Planes,
         quantizer: u8,
@@ -80,7 +96,7 @@ impl LiveOpenH264 {
             self.encoder.force_intra_frame();
         }
         (self.size, self.quantizer) = (picture.size, quantizer);
-        Ok(LivePicture { data: encode(&mut self.encoder, picture)?, is_intra: resized || intra, quantizer })
+        Ok(LivePicture { data: encode(&mut self.encoder, picture)?, is_intra: resized || intra })
     }
 
     fn set_quantizer(&mut self, quantizer: u8) -> Result<(), VideoError> {
@@ -184,11 +200,11 @@ fn codec_error(what: &str, error: &openh264::Error) -> VideoError {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
     use image::{Rgb, RgbImage};
 
-    pub(in crate::video) fn psnr(a: &[u8], b: &[u8]) -> f64 {
+    fn psnr(a: &[u8], b: &[u8]) -> f64 {
         let error: f64 = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum();
         10.0 * (255.0f64.powi(2) * a.len() as f64 / error).log10()
     }
@@ -238,5 +254,36 @@ pub(super) mod tests {
         assert!(fine.0 > middle.0 && middle.0 > coarse.0, "{fine:?} {middle:?} {coarse:?}");
         assert!(fine.1 > middle.1 && middle.1 > coarse.1, "{fine:?} {middle:?} {coarse:?}");
         assert_eq!(run(32), middle);
+    }
+
+    #[test]
+    fn quantizer_and_size_change_while_it_runs() {
+        let picture = |size: u32, t: u32| {
+            let noise = |x: u32, y: u32| ((x * 7 + t) ^ (y * 13)) as u8;
+            Planes::of_rgb(&RgbImage::from_fn(size, size, |x, y| Rgb([noise(x, y), noise(y, x), 90])))
+        };
+        let (mut encoder, mut decoder) = (LiveEncoder::new(30.0).unwrap(), Decoder::new().unwrap());
+        let mut run = |size, quantizer, intra| {
+            let mut sums = (0, 0.0, false);
+            for t in 0..4 {
+                let planes = picture(size, t);
+                let LivePicture { data, is_intra } =
+                    encoder.encode(&planes, quantizer, intra && t == 0).unwrap();
+                let decoded = decoder.decode(&data).unwrap();
+                assert_eq!(decoded.size, planes.size);
+                sums.0 += data.len();
+                sums.1 += psnr(&decoded.planes[0], &planes.planes[0]) / 4.0;
+                // Each intra frame begins with the sequence's parameter set.
+                assert_eq!(data[4] & 31 == 7, is_intra);
+                sums.2 |= is_intra;
+            }
+            sums
+        };
+        let (fine, coarse, again) = (run(64, 16, false), run(64, 40, false), run(64, 16, false));
+        assert!(fine.0 > 2 * coarse.0 && again.0 > 2 * coarse.0, "{fine:?} {coarse:?} {again:?}");
+        assert!(fine.1 > coarse.1 + 6.0 && again.1 > coarse.1 + 6.0, "{fine:?} {coarse:?} {again:?}");
+        assert_eq!([fine.2, coarse.2, again.2], [true, false, false], "intra frames by new quantizers");
+        assert!(run(64, 16, true).2 && run(48, 16, false).2);
+        assert!(!run(48, 16, false).2, "no intra frame that nobody asked for");
     }
 }

@@ -30,7 +30,7 @@ use crate::cli::args::{self, GlArgs};
 use crate::cli::eyes;
 use crate::cli::settings::{Renderer, SettingOptions};
 use yoro_gl::Context;
-use yoro_media::video::{FfmpegEncoder, LiveEncoder, LiveEncoderKind};
+use yoro_media::video::LiveEncoder;
 use yoro_render::PreparedScene;
 use yoro_stream::{FrameRenderer, FromServer, Mode, Token};
 
@@ -50,9 +50,6 @@ pub struct ServeArgs {
     /// H.264's quantizer, 12 (best) to 44; it grows where the connection is too slow
     #[arg(long, default_value_t = 24, value_name = "QP", value_parser = args::whole::<u8>(12..=44))]
     quantizer: u8,
-    /// The video encoder
-    #[arg(long, value_enum, default_value = "auto")]
-    encoder: EncoderArg,
     /// The largest number of frames per second
     #[arg(long, default_value_t = 60, value_name = "HZ", value_parser = args::whole::<u16>(1..=240))]
     frame_rate: u16,
@@ -86,32 +83,6 @@ enum ModeArg {
     EyesDepth,
 }
 
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum EncoderArg {
-    /// A graphics card, through ffmpeg, where that works; otherwise openh264
-    Auto,
-    /// The built-in encoder
-    Openh264,
-    /// NVIDIA's NVENC, through ffmpeg
-    Nvenc,
-    /// VA-API (Intel, AMD), through ffmpeg
-    Vaapi,
-    /// x264 on the CPU, through ffmpeg
-    X264,
-}
-
-impl EncoderArg {
-    fn kind(self) -> LiveEncoderKind {
-        match self {
-            EncoderArg::Auto => LiveEncoderKind::Auto,
-            EncoderArg::Openh264 => LiveEncoderKind::OpenH264,
-            EncoderArg::Nvenc => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Nvenc),
-            EncoderArg::Vaapi => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Vaapi),
-            EncoderArg::X264 => LiveEncoderKind::Ffmpeg(FfmpegEncoder::X264),
-        }
-    }
-}
-
 /// The longest side of an eye in pixels if three parts are side by side: hardware decodes at most 4096 columns.
 const MAX_SIDE_OF_THREE_PARTS: u16 = 1024;
 
@@ -126,8 +97,7 @@ impl Subcommand for ServeArgs {
             "{} has no page: run cargo xtask web, or name its folder with --page",
             folder.display()
         );
-        let encoder = LiveEncoder::new(self.encoder.kind(), self.frame_rate.into())
-            .context("choose another encoder with --encoder")?;
+        let encoder = LiveEncoder::new(self.frame_rate.into())?;
         let lan = self.lan.map(Lan::new).transpose()?;
         // The context is declared first, so that it is dropped after everything created in it.
         let headless;
@@ -163,7 +133,7 @@ impl Subcommand for ServeArgs {
         let hosts: Vec<String> = hosts.iter().map(|host| access::host(scheme, host).to_owned()).collect();
         let token_text = format!("{:032x}", u128::from_be_bytes(token));
         let link = format!("{scheme}://{}/#stream={token_text}&display=side-by-side", hosts[0]);
-        announce(&link, port, lan.as_ref(), server.encoder.name())?;
+        announce(&link, port, lan.as_ref())?;
         let access = Access { token, scheme, hosts };
         let (lobby, clients) = Lobby::new(access, &welcome);
         let tls = lan.map(|lan| lan.tls.into());
@@ -238,8 +208,8 @@ fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServ
     Ok((Source::Scene { prepared, renderer }, FromServer::Welcome(home)))
 }
 
-/// Prints where the stream can be seen, and which encoder is used.
-fn announce(link: &str, port: u16, lan: Option<&Lan>, encoder: &str) -> anyhow::Result<()> {
+/// Prints where the stream can be seen.
+fn announce(link: &str, port: u16, lan: Option<&Lan>) -> anyhow::Result<()> {
     println!("open {link}");
     match lan {
         Some(lan) => {
@@ -256,6 +226,6 @@ fn announce(link: &str, port: u16, lan: Option<&Lan>, encoder: &str) -> anyhow::
             "on a phone by cable: adb reverse tcp:{port} tcp:{port}, then the same address there; by Wi-Fi: --lan"
         ),
     }
-    println!("{encoder} encodes, until Ctrl-C");
+    println!("it is served until Ctrl-C");
     Ok(io::stdout().flush()?)
 }

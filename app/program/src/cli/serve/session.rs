@@ -102,13 +102,12 @@ impl Server {
             answered = Some(request.time_ms);
             let rendered = begun.elapsed();
             let intra = number == 0 || picture.new_span;
-            // Another quantizer for an intra frame would restart some encoders twice.
-            let quantizer = control.quantizer(intra && self.encoder.changes_freely());
+            let quantizer = control.quantizer(intra);
             let encoded = match self.encoder.encode(&picture.planes, quantizer, intra) {
                 Ok(encoded) => encoded,
                 Err(error) => return Ok(Some(error.to_string())),
             };
-            let LivePicture { data, is_intra, quantizer } = encoded;
+            let LivePicture { data, is_intra } = encoded;
             let ms = |time: Duration| time.as_secs_f32() * 1e3;
             let header = FrameHeader {
                 time_ms: request.time_ms,

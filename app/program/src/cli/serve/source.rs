@@ -80,7 +80,7 @@ impl Video {
     /// Returns the next picture that is whole. After the last one, the first follows.
     fn next(&mut self) -> anyhow::Result<Planes> {
         loop {
-            let has_more = match self.reader.read_packed() {
+            let has_more = match self.reader.read() {
                 Ok(Some(planes)) => {
                     self.read += 1;
                     if let Some((error, is_logged @ false)) = &mut self.damage {

@@ -14,7 +14,7 @@ use crate::streaming::Receiver;
 use yoro::eyes::{Eye, EyePair};
 use yoro_files::interrupt;
 use yoro_media::rgb_image;
-use yoro_media::video::{Decoder, LiveEncoder, LiveEncoderKind};
+use yoro_media::video::{Decoder, LiveEncoder};
 use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
 use yoro_render::{PreparedScene, ViewReader};
 use yoro_report::paper::PAPER;
@@ -101,7 +101,7 @@ impl Experiment for Stream {
                 let pictures = pictures.as_ref().map_err(|error| anyhow::anyhow!("{error}"))?;
                 let name = format!("{name}, QP {quantizer}");
                 let measurement = round.of(&name);
-                let mut encoder = LiveEncoder::new(LiveEncoderKind::OpenH264, HEADSET_RATE as f32)?;
+                let mut encoder = LiveEncoder::new(HEADSET_RATE as f32)?;
                 let mut decoder = Decoder::new()?;
                 let mut bytes = 0;
                 for (i, picture) in pictures.iter().enumerate() {
