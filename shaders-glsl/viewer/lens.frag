@@ -27,11 +27,7 @@ uniform vec4 frustum;     // left, bottom, width, height of the image in tangent
 uniform float border;     // width of the fade at a border, as a part of the image
 
 in vec2 lens_uv;
-in vec3 green_direction;
-#ifdef CHROMATIC
-in vec3 red_direction;
-in vec3 blue_direction;
-#endif
+in vec3 direction;
 
 layout(location = 0) out vec4 out_color;
 
@@ -46,15 +42,7 @@ float inside(vec2 uv) {
 }
 
 void main() {
-    vec2 green_uv = image_uv(green_direction);
-#ifdef CHROMATIC
-    vec3 color = vec3(
-        IMAGE(image_uv(red_direction)).r,
-        IMAGE(green_uv).g,
-        IMAGE(image_uv(blue_direction)).b);
-#else
-    vec3 color = IMAGE(green_uv).rgb;
-#endif
+    vec2 uv = image_uv(direction);
     // A turned image may end before the lens does.
-    out_color = vec4(color * min(inside(lens_uv), inside(green_uv)), 1.0);
+    out_color = vec4(IMAGE(uv).rgb * min(inside(lens_uv), inside(uv)), 1.0);
 }

@@ -406,11 +406,7 @@ fn missing_extensions_are_worked_around() {
     assert!(simulated.views().iter().flat_map(|(_, views)| views).all(|view| view.depth.is_none()));
     assert!(simulated.requests("refresh-rate").is_empty());
 
-    // Without permission to submit depth, without sRGB and depth, without controllers, without stereo.
-    let simulated = Simulated::new(&Script::default());
-    simulated.succeed("--frames 1 --set submit-depth=false");
-    let views = simulated.views();
-    assert!(!views.is_empty() && views.iter().flat_map(|(_, views)| views).all(|view| view.depth.is_none()));
+    // Without sRGB and depth, without controllers, without stereo.
     let simulated = Simulated::new(&Script { formats: vec![0x8058], profile: None, ..Script::default() });
     simulated.succeed("--frames 1");
     let simulated = Simulated::new(&Script { stereo: false, ..Script::default() });

@@ -172,7 +172,7 @@ fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
 }
 
 fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
-    for names in [&[][..], &["CHROMATIC"], &["LEVELS"], &["CHROMATIC", "LEVELS"]] {
+    for names in [&[][..], &["LEVELS"]] {
         let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
         let defines: Vec<_> = names.iter().map(|name| (*name, String::new())).collect();
         Program::new(gl, source, &defines)?;

@@ -42,7 +42,6 @@ impl GameLoop {
     pub fn settings(&self) -> Vec<Pair> {
         let (method, pipeline) = self.steps[self.step];
         let name = if self.scenario == 1 { pipeline.name() } else { method };
-        let is_last = self.step + 1 == self.steps.len();
         let own = [
             ("scene", "street".to_owned()),
             ("hud", "false".to_owned()),
@@ -50,7 +49,6 @@ impl GameLoop {
             ("pipeline", pipeline.name().to_owned()),
             ("run", format!("loop-{}-{name}", self.scenario)),
             ("duration", (self.seconds * (self.step + 1) as f32).to_string()),
-            ("auto-exit", is_last.to_string()),
         ];
         own.map(|(key, value)| (key.to_owned(), value)).into_iter().chain(self.extras.clone()).collect()
     }
@@ -88,7 +86,6 @@ mod tests {
                 let settings = Settings::resolve(None, pairs).unwrap();
                 runs.push(settings.run.unwrap());
                 assert_eq!(settings.duration, Some(4.0 * runs.len() as f32));
-                assert_eq!(settings.auto_exit, runs.len() == steps);
                 if !game_loop.advance() {
                     break;
                 }

@@ -294,7 +294,7 @@ impl Configuration {
 
     /// True if these settings name another scene than those in use.
     pub fn is_other_scene(&self, settings: &Settings) -> bool {
-        (&settings.scene, settings.seed) != (&self.settings.scene, self.settings.seed)
+        settings.scene != self.settings.scene
     }
 
     /// Applies settings to a display; if it rejects them, the previous ones stay.

@@ -156,7 +156,7 @@ mod tests {
     fn the_stronger_source_wins() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(FILE_NAME);
-        std::fs::write(&file, "method = \"mono\"\nipd = 0.05\nseed = 7\nscene = \"talk\"\n").unwrap();
+        std::fs::write(&file, "method = \"mono\"\nipd = 0.05\nviewpoint = 7\nscene = \"talk\"\n").unwrap();
         let sources = Sources {
             file: Some(file),
             extras: pairs(&[
@@ -164,14 +164,14 @@ mod tests {
                 ("yoro.scene", "stage"),
                 ("android.intent.extra.REFERRER", "x"),
             ]),
-            menu: pairs(&[("seed", "9"), ("ipd", "0.07")]),
+            menu: pairs(&[("viewpoint", "9"), ("ipd", "0.07")]),
             properties: pairs(&[("ipd", "0.065"), ("hud", "false")]),
             saved: pairs(&[("ipd", "0.055")]),
         };
         let (settings, mistakes) = sources.resolve();
         assert!(mistakes.is_empty(), "{mistakes:?}");
         assert_eq!(
-            (settings.method, settings.ipd, settings.seed),
+            (settings.method, settings.ipd, settings.viewpoint),
             (Method::Mono.into(), Some(Ipd::nearest(0.055)), 9)
         );
         assert_eq!((settings.scene.as_str(), settings.hud), ("stage", false));
@@ -181,7 +181,7 @@ mod tests {
     fn a_mistake_costs_one_setting_and_one_sentence() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(FILE_NAME);
-        std::fs::write(&file, "seed = 7\nmethod = \"magic\"\ncolour = 1\n").unwrap();
+        std::fs::write(&file, "viewpoint = 7\nmethod = \"magic\"\ncolour = 1\n").unwrap();
         let sources = Sources {
             file: Some(file),
             extras: pairs(&[("ipd", "2"), ("speed", "1")]),
@@ -189,8 +189,8 @@ mod tests {
             ..Sources::default()
         };
         let (settings, mistakes) = sources.resolve();
-        assert_eq!((settings.seed, settings.render_scale), (7, 0.5));
-        assert_eq!(Settings { seed: 1, render_scale: 1.0, ..settings }, Settings::default());
+        assert_eq!((settings.viewpoint, settings.render_scale), (7, 0.5));
+        assert_eq!(Settings { viewpoint: 0, render_scale: 1.0, ..settings }, Settings::default());
         let expected = ["colour", "method", "ipd", "speed", "hud"];
         assert_eq!(mistakes.len(), expected.len(), "{mistakes:#?}");
         for key in expected {

@@ -210,14 +210,13 @@ fn a_long_press_opens_the_menu_and_another_recenters() {
 
 #[test]
 fn taps_switch_methods_and_keys_the_ipd() {
-    let settings = [("methods", "yoro,conventional,mono"), ("method", "yoro")];
-    let steps = r#"{ seconds = 1.2 }, { tap = {} }, { seconds = 1.2 }, { key = "headset" }, { seconds = 1.2 }, { tap = {} },
-        { seconds = 1.2 }, { key = "volume-up" }, { key = "volume-down" },
-        { property = { name = "debug.yoro.method", value = "mono" } }, { seconds = 2.2 }"#;
-    let Some(run) = show("taps", &phone(&settings, ""), steps) else { return };
+    let steps = r#"{ seconds = 1.2 }, { tap = {} }, { seconds = 1.2 }, { key = "headset" }, { seconds = 1.2 },
+        { key = "volume-up" }, { key = "volume-down" }, { property = { name = "debug.yoro.method", value = "yoro" } },
+        { seconds = 2.2 }"#;
+    let Some(run) = show("taps", &phone(&[("method", "yoro")], ""), steps) else { return };
     let mut methods: Vec<_> = lines(&run).into_iter().map(|line| line.method).collect();
     methods.dedup();
-    assert_eq!(methods, ["yoro", "conventional", "mono", "yoro", "mono"]);
+    assert_eq!(methods, ["yoro", "conventional", "mono", "yoro"]);
     assert_eq!(run.summary.log_of("YORO").filter(|text| text.starts_with("ipd: ")).count(), 2);
     assert_eq!(run.summary.input.sent, run.summary.input.finished);
     assert_eq!(run.summary.input.sent, run.summary.input.handled);
@@ -348,7 +347,7 @@ fn a_lost_context_is_made_again() {
 
 #[test]
 fn a_session_ends_by_itself() {
-    let device = phone(&[("duration", "2"), ("auto-exit", "true")], "");
+    let device = phone(&[("duration", "2")], "");
     let Some(run) = play("session", &device, r#""launch", { wait-finish = { frames = 3000 } }, "quit""#)
     else {
         return;
@@ -361,7 +360,7 @@ fn a_session_ends_by_itself() {
 fn settings_come_from_file_extras_and_properties() {
     let outside = r#"
         [device.files]
-        "yoro.toml" = "method = \"mono\"\nipd = 0.05\nseed = 7\n"
+        "yoro.toml" = "method = \"mono\"\nipd = 0.05\nviewpoint = 7\n"
         [device.extras]
         method = "conventional"
         ipd = "0.06"
@@ -377,7 +376,7 @@ fn settings_come_from_file_extras_and_properties() {
     assert!(
         settings.contains("method=\"conventional\"")
             && settings.contains("ipd=0.061")
-            && settings.contains("seed=7"),
+            && settings.contains("viewpoint=7"),
         "{settings}"
     );
     assert_eq!(
@@ -605,7 +604,7 @@ fn one_view_through_the_layer_is_what_the_application_synthesizes() {
 /// All checks use the same run: under qemu, compiling shaders takes most of the time.
 #[test]
 fn the_arm64_library_does_what_the_x86_64_library_does() {
-    let device = phone(&[("methods", "yoro,conventional"), ("method", "yoro")], "sensors = false");
+    let device = phone(&[("method", "yoro")], "sensors = false");
     let steps = format!(
         r#""launch", {READY}, {{ capture = "yoro.png" }}, {{ tap = {{}} }}, {{ wait-log = {{ text = "method: conventional", frames = 60 }} }},
             {{ frames = 3 }}, {{ capture = "conventional.png" }}, "quit""#

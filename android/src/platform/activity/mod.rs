@@ -297,9 +297,8 @@ impl Activity {
             if let Some(settings) = self.configuration.next_step() {
                 self.is_summarized = false;
                 self.configuration.apply(settings, &mut self.display);
+                return;
             }
-        }
-        if report.exit {
             match &mut self.display {
                 Display::Headset(headset) => headset.request_exit(),
                 Display::Cardboard(_) | Display::None => self.finish(),

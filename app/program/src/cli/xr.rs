@@ -267,7 +267,7 @@ fn show(
         if report.telemetry_due {
             log::info!("{}", viewer.telemetry(viewer.now_ns(), &DeviceState::default()));
         }
-        is_over |= report.exit;
+        is_over |= report.session_over;
         if is_over || report.scene != SceneState::Ready {
             continue;
         }

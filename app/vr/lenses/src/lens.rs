@@ -1,9 +1,9 @@
-//! The pass that draws both eyes on the screen, with lens distortion, chromatic correction, timewarp and dark
+//! The pass that draws both eyes on the screen, with lens distortion, timewarp and dark
 //! borders.
 
 use std::rc::Rc;
 
-use glam::{Mat4, Quat, Vec2, Vec4};
+use glam::{Mat4, Quat, Vec4};
 
 use crate::hud::Panel;
 use crate::optics::{Optics, mesh_strip};
@@ -11,9 +11,6 @@ use yoro::eyes::{Composition, Eye, EyePair, Frustum};
 use yoro::opengl::{LevelImages, Part};
 use yoro_gl::{Context, Destination, Format, GlError, Mesh, Pass, Program, RasterState, ShaderSource};
 
-/// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are specified. For
-/// acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
-const DISPERSION: [f32; 2] = [0.9913, 1.0106];
 /// Width of the fade at the borders as a share of the image.
 const BORDER: f32 = 0.03;
 /// Width of the alignment line in metres, and its colour, a grey.
@@ -34,20 +31,13 @@ pub struct LensPass {
 }
 
 impl LensPass {
-    /// Compiles the program and makes the meshes for a viewer. `chromatic` enables chromatic correction, and `levels` eyes
-    /// of levels.
+    /// Compiles the program and makes the meshes for a viewer; with `levels`, also for eyes of levels.
     ///
     /// # Errors
     /// [`GlError`] if the driver refuses a program or a mesh.
-    pub fn new(
-        gl: &Rc<Context>,
-        optics: &Optics,
-        chromatic: bool,
-        levels: bool,
-    ) -> Result<LensPass, GlError> {
+    pub fn new(gl: &Rc<Context>, optics: &Optics, levels: bool) -> Result<LensPass, GlError> {
         let program = |levels: bool| {
-            let on = [("CHROMATIC", chromatic), ("LEVELS", levels)].into_iter().filter(|(_, on)| *on);
-            let defines: Vec<_> = on.map(|(name, _)| (name, String::new())).collect();
+            let defines: Vec<_> = levels.then(|| ("LEVELS", String::new())).into_iter().collect();
             let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
             Program::new(gl, source, &defines)
         };
@@ -115,11 +105,7 @@ impl LensPass {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
             self.gl.fill(window.origin, window.size, [0.0, 0.0, 0.0, 1.0]);
-            program
-                .bind()
-                .set("turn", Mat4::from_quat(turn))
-                .set("dispersion", Vec2::from(DISPERSION))
-                .set("border", BORDER);
+            program.bind().set("turn", Mat4::from_quat(turn)).set("border", BORDER);
             for eye in Eye::BOTH {
                 let frustum = &self.frusta[eye.index()];
                 let rectangle = Vec4::new(frustum.left, frustum.bottom, frustum.width(), frustum.height());
@@ -140,6 +126,8 @@ impl LensPass {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec2;
+
     use crate::optics::{Distortion, MESH_RESOLUTION, Rotation, Screen};
     use crate::params::ViewerParams;
     use yoro::eyes::LevelPlace;
@@ -210,7 +198,7 @@ mod tests {
             eye.copy_color([0, 0], &to);
             image
         });
-        let lens = LensPass::new(gl, &optics, false, false).unwrap();
+        let lens = LensPass::new(gl, &optics, false).unwrap();
         let [whole, cropped] =
             [shown(&eyes, None), shown(&around, Some((part, eyes[0].size())))].map(|eyes| {
                 lens.run(&eyes, None, Quat::from_rotation_y(0.2), &Destination::whole(&window));
@@ -225,20 +213,18 @@ mod tests {
         let headless = Headless::open(Backend::Egl).unwrap();
         let (gl, optics) = (headless.gl(), optics());
         let (eyes, window) = (marked_eyes(gl, &optics), window(gl));
-        for chromatic in [false, true] {
-            let lens = LensPass::new(gl, &optics, chromatic, false).unwrap();
-            lens.run(&shown(&eyes, None), None, Quat::IDENTITY, &Destination::whole(&window));
-            for (eye, color) in Eye::BOTH.into_iter().zip([[255, 0, 0, 255], [0, 0, 255, 255]]) {
-                let center = optics.lens_center(eye);
-                assert_eq!(pixel(&window, center), [255; 4], "straight ahead is at the lens's centre");
-                for side in [-0.010, 0.010] {
-                    assert_eq!(pixel(&window, center + Vec2::new(side, 0.0)), color);
-                }
+        let lens = LensPass::new(gl, &optics, false).unwrap();
+        lens.run(&shown(&eyes, None), None, Quat::IDENTITY, &Destination::whole(&window));
+        for (eye, color) in Eye::BOTH.into_iter().zip([[255, 0, 0, 255], [0, 0, 255, 255]]) {
+            let center = optics.lens_center(eye);
+            assert_eq!(pixel(&window, center), [255; 4], "straight ahead is at the lens's centre");
+            for side in [-0.010, 0.010] {
+                assert_eq!(pixel(&window, center + Vec2::new(side, 0.0)), color);
             }
-            let [line, ..] = pixel(&window, Vec2::new(screen().metres()[0] / 2.0, 0.001));
-            assert_eq!(line, 89, "the alignment line");
-            assert_eq!(pixel(&window, Vec2::new(0.0005, 0.0005)), [0, 0, 0, 255], "no lens shows the corner");
         }
+        let [line, ..] = pixel(&window, Vec2::new(screen().metres()[0] / 2.0, 0.001));
+        assert_eq!(line, 89, "the alignment line");
+        assert_eq!(pixel(&window, Vec2::new(0.0005, 0.0005)), [0, 0, 0, 255], "no lens shows the corner");
         assert_eq!(gl.take_errors(), None);
     }
 
@@ -266,7 +252,7 @@ mod tests {
         let headless = Headless::open(Backend::Egl).unwrap();
         let (gl, optics) = (headless.gl(), optics());
         let (eyes, window) = (marked_eyes(gl, &optics), window(gl));
-        let lens = LensPass::new(gl, &optics, false, false).unwrap();
+        let lens = LensPass::new(gl, &optics, false).unwrap();
         let at = |turn| {
             lens.run(&shown(&eyes, None), None, turn, &Destination::whole(&window));
             mark(&window, &optics)

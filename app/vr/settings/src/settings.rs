@@ -78,17 +78,11 @@ settings! {
     /// A built-in scene, or an OBJ, glTF or GLB file, by its path or by its name in one of the platform's scene folders.
     "scene" scene: String = "prototype".into();
         range(|s| !s.scene.trim().is_empty(), "name a built-in scene or a file"),
-    /// Seed of a built-in scene.
-    "seed" seed: u64 = 1,
     /// The scene's viewpoint to stand at, from 0; numbers beyond the last one start over.
     "viewpoint" viewpoint: usize = 0,
     /// The stereo method to start with; `auto` measures `conventional` and `yoro` on the device and uses the cheaper one, or
     /// with rendered holes the best of three that holds the rate.
     "method" method: MethodChoice = MethodChoice::Auto,
-    /// The methods that a tap goes through.
-    "methods" methods: Vec<MethodChoice> =
-        [MethodChoice::Auto].into_iter().chain([Method::Synthesized, Method::Conventional, Method::Mono].map(Into::into)).collect();
-        range(|s| !s.methods.is_empty(), "name at least one method, such as yoro,mono"),
     /// The pipeline that synthesizes the other eye.
     "pipeline" pipeline: Pipeline = Pipeline::default(),
     /// paper: ImBuffer resolution, as a divisor from 1 to 64 (the paper: 1, 2, 4, 8, 16) or a fixed size (512x512).
@@ -134,8 +128,6 @@ settings! {
     /// Phones: how the finished image follows the head after rendering. `position` copies the depth of both eyes and adds
     /// three passes to each; not with `foveation`.
     "timewarp" timewarp: Timewarp = Timewarp::default(),
-    /// Correct the lenses' chromatic aberration.
-    "chromatic" chromatic: bool = false,
     /// Show the HUD.
     "hud" hud: bool = true; off_help("Hide the HUD"),
     /// Samples in each pixel, 1, 2 or 4, as far as the driver has them.
@@ -144,7 +136,7 @@ settings! {
     "shadow-map" shadow_map: u32 = 2048; range(|s| s.shadow_map <= 8192, "give texels from 0 to 8192"),
     /// Glow around what is brighter than white.
     "bloom" bloom: bool = true,
-    /// Length of the session in seconds, after which its summary is logged.
+    /// Length of the session in seconds. Then its summary is logged, the questions are asked, and the program ends.
     "duration" duration: Option<f32> = None;
         range(|s| s.duration.is_none_or(is_positive), "give seconds above 0, or auto");
         auto("no end"),
@@ -154,8 +146,6 @@ settings! {
     "participant" participant: Option<String> = None,
     /// Number of the trial, for the log.
     "trial" trial: Option<u32> = None,
-    /// End the program after `duration` and the questions.
-    "auto-exit" auto_exit: bool = false,
     /// The display that shows the eyes; read at start-up only.
     "display" display: DisplayKind = DisplayKind::Auto,
     /// Refreshes per second. Headsets: the nearest of the rates that the runtime offers. Phones: the rate that Android is
@@ -165,8 +155,6 @@ settings! {
         auto("headsets: the runtime's own; phones: the rate at the start"),
     /// Clock level of the processors. Phones: the two sustained levels are Android's sustained performance mode.
     "performance" performance: Performance = Performance::SustainedHigh,
-    /// Headsets: submit the depth of both eyes to the compositor, which costs energy; read when a session begins.
-    "submit-depth" submit_depth: bool = true,
     /// Headsets: one view instead of two, if the runtime or an API layer such as yoro's offers that. Meant for
     /// `method=mono`, which renders only one view; read when a session begins.
     "one-view" one_view: bool = false,
@@ -332,7 +320,6 @@ mod tests {
         let settings = with(&[
             "scene=/sdcard/a room.obj",
             "method=conventional",
-            "methods=mono,yoro",
             "pipeline=paper",
             "imbuffer=256x128",
             "guard-band=none",
@@ -340,7 +327,7 @@ mod tests {
             "dominant=left",
             "ipd=0.06",
             "adaptive=true",
-            "seed=7",
+            "viewpoint=7",
             "msaa=2",
             "duration=30",
             "viewer=https://g.co/cardboard",
@@ -349,29 +336,18 @@ mod tests {
         .unwrap();
         assert_eq!(settings.scene, "/sdcard/a room.obj");
         assert_eq!(settings.method, Method::Conventional.into());
-        assert_eq!(settings.methods, [Method::Mono, Method::Synthesized].map(MethodChoice::from));
         assert_eq!(settings.imbuffer, ImBufferSize::Fixed([256, 128]));
         assert_eq!((settings.guard_band, settings.ipd), (Some(GuardBand::None), Some(Ipd::nearest(0.06))));
         assert_eq!(settings.screen.unwrap().metres(), [0.158, 0.0705]);
         assert_eq!((settings.dominant, settings.duration), (Eye::Left, Some(30.0)));
         assert!(settings.adaptive && settings.hud && settings.msaa == 2);
         assert_eq!(settings.pipeline, Pipeline::Paper);
-        let again = with(&[
-            "ipd=0.06",
-            "ipd=auto",
-            "imbuffer=4",
-            "method=mono",
-            "method=auto",
-            "methods=auto,mono",
-            "guard-band=0.5",
-        ])
-        .unwrap();
+        let again =
+            with(&["ipd=0.06", "ipd=auto", "imbuffer=4", "method=mono", "method=auto", "guard-band=0.5"])
+                .unwrap();
         assert_eq!((again.ipd, again.imbuffer), (None, ImBufferSize::Divisor(4)));
         assert_eq!(again.guard_band, Some(GuardBand::Distance(0.5)));
-        assert_eq!(
-            (again.method, again.methods),
-            (MethodChoice::Auto, vec![MethodChoice::Auto, Method::Mono.into()])
-        );
+        assert_eq!((again.method, settings.viewpoint), (MethodChoice::Auto, 7));
     }
 
     #[test]
@@ -389,8 +365,7 @@ mod tests {
         refused("guard-band=far", &["\"guard-band\"", "40px"]);
         refused("adaptive=yes", &["\"adaptive\"", "yes"]);
         refused("render-scale=9", &["0.25"]);
-        refused("seed=-1", &["\"seed\""]);
-        refused("methods=yoro,fast", &["\"methods\"", "fast"]);
+        refused("viewpoint=-1", &["\"viewpoint\""]);
         refused("display=oculus", &["\"display\"", "openxr", "cardboard"]);
         refused("screen=158x71", &["\"screen\"", "158x71mm", "auto"]);
         refused("screen=15.8x7.1mm", &["30 to 400"]);
@@ -425,7 +400,7 @@ mod tests {
     fn a_file_comes_before_overrides() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("yoro.toml");
-        std::fs::write(&path, "method = \"mono\"\nipd = 0.06\nmethods = [\"mono\"]\nguard-band = 2\n")
+        std::fs::write(&path, "method = \"mono\"\nipd = 0.06\nquestions = [\"a\"]\nguard-band = 2\n")
             .unwrap();
         let settings = Settings::resolve(Some(&path), ["method=conventional"]).unwrap();
         assert_eq!((settings.method, settings.ipd), (Method::Conventional.into(), Some(Ipd::nearest(0.06))));
@@ -448,17 +423,16 @@ mod tests {
     #[test]
     fn each_setting_as_a_text_is_read_again() {
         let settings =
-            with(&["ipd=0.061", "methods=mono,yoro", "imbuffer=512x512", "scene=a b", "run=7", "trial=3"])
+            with(&["ipd=0.061", "questions=a,b", "imbuffer=512x512", "scene=a b", "run=7", "trial=3"])
                 .unwrap();
-        let mut read = Settings { seed: 99, methods: Vec::new(), hud: false, ..Settings::default() };
+        let mut read = Settings { viewpoint: 99, hud: false, ..Settings::default() };
         for (key, value) in settings.pairs() {
             read.apply(&format!("{key}={value}")).unwrap();
         }
-        // An empty list is written as an empty text, which changes nothing.
         assert_eq!(read, settings);
         let line = settings.to_string();
-        assert!(line.starts_with("scene=\"a b\" seed=1 "), "{line}");
-        assert!(line.contains("methods=[\"mono\", \"yoro\"]") && line.contains(" ipd=0.061 "), "{line}");
+        assert!(line.starts_with("scene=\"a b\" viewpoint=0 "), "{line}");
+        assert!(line.contains("questions=[\"a\", \"b\"]") && line.contains(" ipd=0.061 "), "{line}");
         assert!(line.contains("duration=auto"), "{line}");
     }
 

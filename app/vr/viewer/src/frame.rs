@@ -36,8 +36,7 @@ pub struct PresentReport {
     /// [`Viewer::telemetry`](crate::Viewer::telemetry).
     pub telemetry_due: bool,
     /// The session's `duration` has passed since the scene was first shown, and its questions are answered: log
-    /// [`Viewer::summary`](crate::Viewer::summary). True in only one report.
+    /// [`Viewer::summary`](crate::Viewer::summary) and end the program, or configure a longer `duration`. True in only one
+    /// report.
     pub session_over: bool,
-    /// The session is over and `auto-exit` is on: end the program. Stays true from then on.
-    pub exit: bool,
 }

@@ -17,13 +17,8 @@ const STACK: usize = 8 << 20;
 /// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneSource {
-    /// Generated from a seed.
-    Builtin {
-        /// Its name.
-        name: &'static str,
-        /// Its seed.
-        seed: u64,
-    },
+    /// A built-in one, by its name.
+    Builtin(&'static str),
     /// Loaded from a file.
     File(PathBuf),
 }
@@ -34,9 +29,9 @@ impl SceneSource {
     ///
     /// # Errors
     /// [`ViewerError::NoScene`], which lists the available scenes.
-    pub fn find(name: &str, seed: u64, folders: &[PathBuf]) -> Result<SceneSource, ViewerError> {
+    pub fn find(name: &str, folders: &[PathBuf]) -> Result<SceneSource, ViewerError> {
         if let Some(builtin) = BUILTINS.iter().find(|b| b.name == name) {
-            return Ok(SceneSource::Builtin { name: builtin.name, seed });
+            return Ok(SceneSource::Builtin(builtin.name));
         }
         if Path::new(name).is_file() {
             return Ok(SceneSource::File(name.into()));
@@ -61,22 +56,24 @@ impl SceneSource {
     }
 
     /// Returns all scenes: the built-in ones, then the files in the folders and their direct subfolders.
-    pub fn all(seed: u64, folders: &[PathBuf]) -> Vec<SceneSource> {
-        let builtin = BUILTINS.iter().map(|b| SceneSource::Builtin { name: b.name, seed });
+    pub fn all(folders: &[PathBuf]) -> Vec<SceneSource> {
+        let builtin = BUILTINS.iter().map(|b| SceneSource::Builtin(b.name));
         builtin.chain(list_scenes(folders).into_iter().map(SceneSource::File)).collect()
     }
 
     /// The scene's name.
     pub fn name(&self) -> String {
         match self {
-            SceneSource::Builtin { name, .. } => (*name).to_owned(),
+            SceneSource::Builtin(name) => (*name).to_owned(),
             SceneSource::File(path) => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         }
     }
 
     fn load(&self) -> Result<Scene, String> {
         match self {
-            SceneSource::Builtin { name, seed } => yoro_scenes::build(name, *seed).map_err(|e| e.to_string()),
+            SceneSource::Builtin(name) => {
+                yoro_scenes::build(name, yoro_scenes::DEFAULT_SEED).map_err(|e| e.to_string())
+            }
             SceneSource::File(path) => yoro_assets::load(path).map_err(|e| e.to_string()),
         }
     }
@@ -145,12 +142,12 @@ mod tests {
         let folders = [folder.path().to_owned(), folder.path().join("missing")];
         assert_eq!(list_scenes(&folders), std::slice::from_ref(&room));
         for name in ["room", "room.obj", "rooms", "rooms/room.obj", room.to_str().unwrap()] {
-            let source = SceneSource::find(name, 1, &folders).unwrap();
+            let source = SceneSource::find(name, &folders).unwrap();
             assert_eq!((&source, source.name().as_str()), (&SceneSource::File(room.clone()), "room"));
         }
-        let builtin = SceneSource::find("prototype", 3, &folders).unwrap();
-        assert_eq!(builtin, SceneSource::Builtin { name: "prototype", seed: 3 });
-        let message = SceneSource::find("palace", 1, &folders).unwrap_err().to_string();
+        let builtin = SceneSource::find("prototype", &folders).unwrap();
+        assert_eq!(builtin, SceneSource::Builtin("prototype"));
+        let message = SceneSource::find("palace", &folders).unwrap_err().to_string();
         assert!(message.contains("palace") && message.contains("prototype") && message.contains("room.obj"));
     }
 }

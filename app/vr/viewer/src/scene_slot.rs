@@ -111,8 +111,8 @@ impl SceneSlot {
     }
 
     /// Returns the scene after this one, if there is another.
-    pub fn next(&self, seed: u64, folders: &[PathBuf]) -> Option<SceneSource> {
-        let sources = SceneSource::all(seed, folders);
+    pub fn next(&self, folders: &[PathBuf]) -> Option<SceneSource> {
+        let sources = SceneSource::all(folders);
         let at = sources.iter().position(|source| *source == self.source);
         let next = at.map_or(0, |at| at + 1) % sources.len().max(1);
         sources.into_iter().nth(next).filter(|source| *source != self.source)

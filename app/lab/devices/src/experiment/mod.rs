@@ -45,7 +45,7 @@ pub const FILE: &str = "experiment.toml";
 /// Estimated seconds to start the application, for the length of a plan.
 const START_S: f64 = 5.0;
 /// Settings that an experiment's file may not contain.
-const RESERVED: &[&str] = &["scene", "duration", "auto-exit", "run"];
+const RESERVED: &[&str] = &["scene", "duration", "run"];
 /// Maximum number of runs on a device: two weeks of two minutes each.
 const MAX_RUNS: usize = 10_000;
 

@@ -50,7 +50,7 @@ impl Plan {
     /// Returns the settings that differ from the defaults, without those that every run has.
     pub(crate) fn own_settings(&self) -> BTreeMap<String, String> {
         let defaults = Settings::default().pairs();
-        let of_each = ["scene", "method", "duration", "auto-exit", "run"];
+        let of_each = ["scene", "method", "duration", "run"];
         let pairs = self.settings.pairs().into_iter();
         pairs.filter(|pair| !defaults.contains(pair) && !of_each.contains(&pair.0.as_str())).collect()
     }

@@ -147,7 +147,6 @@ impl Session<'_> {
         let left_s = self.plan.seconds() - passed_s + MARGIN_S;
         let settings = Settings {
             duration: Some(left_s.max(MARGIN_S) as f32),
-            auto_exit: true,
             run: Some(self.label.clone()),
             ..self.plan.settings.clone()
         };

@@ -159,7 +159,7 @@ impl Cardboard {
     }
 
     fn lens_pass(&self, gl: &Rc<Context>) -> Result<LensPass, GlError> {
-        LensPass::new(gl, &self.optics, self.viewer.settings().chromatic, self.is_foveated())
+        LensPass::new(gl, &self.optics, self.is_foveated())
     }
 
     /// Recomputes the lenses.
@@ -188,7 +188,7 @@ impl Cardboard {
         change: impl FnOnce(&mut Viewer, Settings) -> Result<(), ViewerError>,
     ) -> Result<(), ViewerError> {
         let before = self.viewer.settings();
-        let optics_differ = (settings.chromatic, settings.screen) != (before.chromatic, before.screen);
+        let optics_differ = settings.screen != before.screen;
         let params = if settings.viewer == before.viewer {
             None
         } else {

@@ -40,12 +40,7 @@ const PAIRS: [Pair; 8] = [
     Pair { what: "near boards, glass", settings: &[], late: 0.0, expected: Expected::Like(31.5) },
     Pair { what: "the other eye", settings: &["dominant=left"], late: 0.0, expected: Expected::Like(32.5) },
     Pair { what: "high", settings: &["foveation=high"], late: 0.0, expected: Expected::Like(30.5) },
-    Pair {
-        what: "lenses",
-        settings: &["viewer=v2", "chromatic=true"],
-        late: 0.0,
-        expected: Expected::Like(30.5),
-    },
+    Pair { what: "lenses", settings: &["viewer=v2"], late: 0.0, expected: Expected::Like(30.5) },
     Pair { what: "timewarp", settings: &["timewarp=rotation"], late: 3.0, expected: Expected::Like(31.5) },
     Pair {
         what: "positional timewarp",

@@ -89,10 +89,10 @@ impl Viewer {
         settings: &Settings,
         folders: &[PathBuf],
     ) -> Result<Option<SceneSource>, ViewerError> {
-        if (&settings.scene, settings.seed) == (&self.settings.scene, self.settings.seed) {
+        if settings.scene == self.settings.scene {
             return Ok(None);
         }
-        SceneSource::find(&settings.scene, settings.seed, folders).map(Some)
+        SceneSource::find(&settings.scene, folders).map(Some)
     }
 
     fn changes_quality(&self, before: &Settings) -> bool {

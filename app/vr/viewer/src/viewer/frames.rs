@@ -171,18 +171,14 @@ impl Viewer {
             self.method.is_mixed |= self.auto().is_some_and(Auto::is_measuring);
             self.adapt(&load)?;
         }
-        let was_over = self.stats.is_over;
-        if !was_over && self.stats.is_time_up(&self.settings, now_ns) && self.ask() {
-            self.stats.is_over = true;
-        }
-        let is_over = self.stats.is_over;
+        let session_over = !self.stats.is_over && self.stats.is_time_up(&self.settings, now_ns) && self.ask();
+        self.stats.is_over |= session_over;
         Ok(PresentReport {
             scene,
             late_refreshes,
             gpu_ms,
             telemetry_due: self.stats.telemetry.is_due(now_ns),
-            session_over: is_over && !was_over,
-            exit: is_over && self.settings.auto_exit,
+            session_over,
         })
     }
 

@@ -127,7 +127,7 @@ impl Viewer {
 
     /// Loads the scene after this one.
     pub(super) fn next_scene(&mut self) -> Action {
-        let Some(source) = self.scene.next(self.settings.seed, &self.folders) else { return Action::Nothing };
+        let Some(source) = self.scene.next(&self.folders) else { return Action::Nothing };
         self.replace_scene(source, 0);
         Action::Scene
     }

@@ -106,7 +106,7 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError::NoScene`] for a mistake in the settings.
     pub fn new(settings: Settings, folders: &[PathBuf]) -> Result<Viewer, ViewerError> {
-        let source = SceneSource::find(&settings.scene, settings.seed, folders)?;
+        let source = SceneSource::find(&settings.scene, folders)?;
         log::info!("settings: {settings}");
         Ok(Viewer {
             folders: folders.to_vec(),

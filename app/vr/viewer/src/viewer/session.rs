@@ -10,6 +10,14 @@ use yoro_render::stereo::{
 };
 use yoro_settings::Settings;
 
+/// The methods that a tap goes through.
+const TAPPED: [MethodChoice; 4] = [
+    MethodChoice::Auto,
+    MethodChoice::Named(Method::Synthesized),
+    MethodChoice::Named(Method::Conventional),
+    MethodChoice::Named(Method::Mono),
+];
+
 /// The method and the pipeline in use, which may differ from those of the settings.
 pub(super) struct MethodInUse {
     pub choice: MethodChoice,
@@ -146,14 +154,13 @@ impl Viewer {
         Ok(())
     }
 
-    /// Switches to the next (1) or previous (-1) method of the settings' list that the driver supports.
+    /// Switches to the next (1) or previous (-1) method of [`TAPPED`] that the driver supports.
     pub(super) fn switch_method(&mut self, step: isize) -> Result<Option<MethodChoice>, GlError> {
-        let methods = self.settings.methods.clone();
-        let count = methods.len() as isize;
-        let at = methods.iter().position(|method| *method == self.method.choice);
+        let count = TAPPED.len() as isize;
+        let at = TAPPED.iter().position(|method| *method == self.method.choice);
         // A method that is not in the list counts as before the first and after the last.
         let start = at.map_or(if step > 0 { 0 } else { -1 }, |at| at as isize + step);
-        for next in (0..count).map(|i| methods[(start + i * step).rem_euclid(count) as usize]) {
+        for next in (0..count).map(|i| TAPPED[(start + i * step).rem_euclid(count) as usize]) {
             if next == self.method.choice {
                 continue;
             }

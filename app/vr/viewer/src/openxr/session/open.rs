@@ -52,7 +52,7 @@ impl Session {
         let (session, waiter, stream) = graphics::create_session(&instance, system.id, graphics)?;
         #[cfg(target_os = "android")]
         hint_thread(&session)?;
-        let images = FrameImages::new(graphics, gl, &session, &sizes, settings.submit_depth)?;
+        let images = FrameImages::new(graphics, gl, &session, &sizes)?;
         let FrameImages { color, wide, inset, depth, panel, formats } = images;
         let is_stereo = system.views == xr::ViewConfigurationType::PRIMARY_STEREO;
         let motion = match settings.frame_rate {
@@ -287,7 +287,6 @@ impl FrameImages {
         gl: &Rc<Context>,
         session: &xr::Session<xr::OpenGlEs>,
         sizes: &[LevelSize],
-        submit_depth: bool,
     ) -> Result<FrameImages, XrError> {
         let formats = call("xrEnumerateSwapchainFormats", session.enumerate_swapchain_formats())?;
         let color = storage::choose(&storage::COLOR_FORMATS, &formats).ok_or_else(|| {
@@ -302,11 +301,11 @@ impl FrameImages {
         };
         let mut levels = sizes.iter().map(|size| level(*size)).collect::<Result<Vec<_>, _>>()?;
         let depth = match session.instance().exts().khr_composition_layer_depth {
-            Some(_) if submit_depth => {
+            Some(_) => {
                 let made = make_depth(graphics, gl, session, &formats, &mut levels);
                 optional("no depth is submitted", made)?.flatten()
             }
-            _ => None,
+            None => None,
         };
         let size = [0, 1].map(|i| Panel::MAX_SIZE[i].max(Board::SIZE[i]));
         let panel = Images::new(
