@@ -65,7 +65,7 @@ pub struct StereoCamera {
     /// Fewer pixels where the eyes do not look. `None` for all pixels everywhere.
     pub foveation: Option<Foveation>,
     /// Where the eyes look, as a direction in the camera's axes: it may change in every frame, and nothing is created anew.
-    /// `None` for straight ahead, always: keep the last direction while a tracker has lost the eyes.
+    /// `None`, as while a tracker has lost the eyes, keeps the last direction; before the first one, it is straight ahead.
     pub gaze: Option<Dir3>,
     /// Distance between the eyes.
     pub ipd: f32,
@@ -132,6 +132,8 @@ pub(crate) struct Eyes {
     /// The pose among the views that the camera's `Transform` has, if it is not the head's.
     pub(crate) origin: Option<Pose>,
     far: f32,
+    /// The last gaze while there is foveation. Images have other sizes without one.
+    pub(crate) gaze: Option<Dir3>,
     /// The camera that shows both eyes.
     pub(crate) screen: Option<Entity>,
     /// The camera's original render target, and its size in pixels as the screen knows it.
@@ -430,10 +432,11 @@ impl StereoCameraPartsItem<'_, '_> {
     /// Returns what is done for a request, as far as it is possible, and logs what is not.
     fn plan(&mut self, request: &EyesRequest) -> (Plan, Views, Holes) {
         let pair = request.pair;
+        self.eyes.gaze = request.foveation.and(request.gaze.or(self.eyes.gaze));
         let effect = self.rendering.whole_image_effect().filter(|_| request.foveation.is_some());
         let (levels, unfoveated) = match effect {
             Some(effect) => (StereoViews::from(*pair), Some(format!("{effect} needs the whole image"))),
-            None => match levels(pair, request.foveation, request.gaze) {
+            None => match levels(pair, request.foveation, self.eyes.gaze) {
                 Ok(levels) => (levels, None),
                 Err(error) => (StereoViews::from(*pair), Some(error.to_string())),
             },

@@ -58,7 +58,7 @@ pub struct XrStereoCamera {
     /// Fewer pixels where the eyes do not look. `None` for all pixels everywhere.
     pub foveation: Option<Foveation>,
     /// Where the eyes look, as a direction in the camera's axes: it may change in every frame, and nothing is created anew.
-    /// `None` for straight ahead.
+    /// `None`, as while a tracker has lost the eyes, keeps the last direction; before the first one, it is straight ahead.
     pub gaze: Option<Dir3>,
     /// Distance of the near plane in metres, more than 0.
     pub near: f32,
@@ -113,7 +113,7 @@ impl XrStereoCamera {
         let wide = arranged(shown.wide)?;
         let inset = shown.inset.as_ref().and_then(|inset| arranged(inset.camera));
         let levels =
-            levels(&self.pair(views, config)?, self.foveation.filter(|_| inset.is_some()), self.gaze);
+            levels(&self.pair(views, config)?, self.foveation.filter(|_| inset.is_some()), shown.gaze);
         let newest = Views::new(&levels.ok()?, wide.plan, guard_band(self.guard_distance)).ok()?;
         let sizes = [Some(wide), inset].map(|level| level.map(|level| level.views.sizes()));
         Some(newest).filter(|newest| newest.sizes() == sizes)

@@ -83,6 +83,8 @@ pub(crate) struct ShownEyes {
     dominant: Eye,
     /// Width and height of each eye's image.
     size: [u32; 2],
+    /// The gaze, as [`Eyes`] keeps it.
+    pub(crate) gaze: Option<Dir3>,
     /// The camera of the level that fills the eyes.
     pub(crate) wide: Entity,
     pub(crate) inset: Option<ShownInset>,
@@ -140,7 +142,7 @@ fn extract(
         let screen = eyes.screen.map_or(Some(last), rendered);
         if let Some(screen) = screen {
             let Views { dominant, size, .. } = views;
-            commands.entity(screen).insert(ShownEyes { dominant, size, wide, inset });
+            commands.entity(screen).insert(ShownEyes { dominant, size, gaze: eyes.gaze, wide, inset });
         }
     }
 }

@@ -133,6 +133,10 @@ fn the_gaze_moves_and_fewer_pixels_are_shaded() {
         assert!(own > 45.0 && around < 40.0, "{gaze}: {own:.2} dB, around it {around:.2}");
         assert!((other - without).abs() < 0.1, "{gaze}: {other:.2} dB, {without:.2} without levels");
     }
+    // A tracker that has lost the eyes leaves the inset where it was.
+    let before_loss = stage.picture();
+    stage.stereo().gaze = None;
+    assert!(stage.picture() == before_loss && objects(&stage) == before);
 
     // What cannot be foveated has all pixels.
     let impossible = Foveation { density: 2.0, ..Foveation::MEDIUM };

@@ -81,8 +81,8 @@ const _SWITCH_OFF := 0.35
 ## perspective.
 @export var preview_without_headset := false
 
-## Where the eyes look, as a direction in the world, such as that of an eye tracker; it may change in each frame. Zero
-## stands for straight ahead, always: keep the last direction while a tracker has lost the eyes.
+## Where the eyes look, as a direction in the world, such as that of an eye tracker; it may change in each frame. Zero,
+## as while a tracker has lost the eyes, keeps the last direction from the head; before the first one, it is straight ahead.
 var gaze := Vector3.ZERO
 
 var _source: YoroSource
@@ -97,6 +97,8 @@ var _world_effects: Array[CompositorEffect] = []
 var _trouble := ""
 var _drawn := _Drawn.ALL
 var _shown_layers := 0
+## The last gaze in the axes of the rendered eye. Images have other sizes without one.
+var _last_gaze := Vector3.ZERO
 
 
 ## Returns one sentence that says why no eye is synthesized although [member mode] is not [code]BOTH_VIEWS[/code], or why
@@ -132,9 +134,13 @@ func foveation_strength() -> int:
 	return ProjectSettings.get_setting(FOVEATION_SETTING, 0) if foveation == Foveation.PROJECT else foveation - 1
 
 
-## Returns [member gaze] in the axes of an eye at [param at].
+## Returns [member gaze] in the axes of the rendered eye, which is at [param at].
 func gaze_from(at: Transform3D) -> Vector3:
-	return at.basis.inverse() * gaze if gaze.is_finite() else Vector3.FORWARD
+	if foveation_strength() == 0:
+		_last_gaze = Vector3.ZERO
+	elif gaze.is_finite() and gaze != Vector3.ZERO:
+		_last_gaze = at.basis.inverse() * gaze
+	return _last_gaze
 
 
 ## Returns the preview, or null if there is none.

@@ -42,7 +42,7 @@ func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect
 	_environment.follow(like.shown_environment())
 	camera.environment = _environment.copy
 	camera.attributes = like.attributes
-	show_layers(self, camera, like.cull_mask & ~like.stereo_layers & ~YoroMask.LAYER | layers)
+	show_layers(self, camera, like.cull_mask & ~like.stereo_layers & ~YoroMask.LAYERS | layers)
 	if effects != _effects or camera.compositor.compositor_effects.is_empty():
 		_effects = effects.duplicate()
 		var all := _effects.duplicate()

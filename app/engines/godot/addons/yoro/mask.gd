@@ -4,8 +4,11 @@
 class_name YoroMask
 extends RefCounted
 
-## The layer of the frame. Nodes have the first twenty, and the editor the next ones but this.
-const LAYER := 1 << 31
+## The layers of frames. Nodes have the first twenty, and the editor those from 1 << 24 to 1 << 30.
+const LAYERS := 1 << 31 | 15 << 20
+
+## The layers in use. Each frame has its own, since sources may share a world.
+static var _taken := 0
 
 const _SHADER := "
 shader_type spatial;
@@ -25,9 +28,14 @@ var _mesh := ArrayMesh.new()
 var _material := ShaderMaterial.new()
 var _instance := RenderingServer.instance_create()
 var _scenario: RID
+## The layer of this frame; 0 if none is free, so that all pixels are shaded.
+var _layer := 0
 
 
 func _init() -> void:
+	var free := LAYERS & ~_taken
+	_layer = free & -free
+	_taken |= _layer
 	_material.shader = Shader.new()
 	_material.shader.code = _SHADER
 	_material.render_priority = Material.RENDER_PRIORITY_MIN
@@ -46,7 +54,7 @@ func _init() -> void:
 	_mesh.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, arrays)
 	_mesh.surface_set_material(0, _material)
 	RenderingServer.instance_set_base(_instance, _mesh.get_rid())
-	RenderingServer.instance_set_layer_mask(_instance, LAYER)
+	RenderingServer.instance_set_layer_mask(_instance, _layer)
 	# Wherever the camera is.
 	RenderingServer.instance_set_custom_aabb(_instance, AABB(-1e6 * Vector3.ONE, 2e6 * Vector3.ONE))
 	RenderingServer.instance_geometry_set_cast_shadows_setting(_instance, RenderingServer.SHADOW_CASTING_SETTING_OFF)
@@ -54,7 +62,13 @@ func _init() -> void:
 
 func _notification(what: int) -> void:
 	if what == NOTIFICATION_PREDELETE:
+		_taken &= ~_layer
 		RenderingServer.free_rid(_instance)
+
+
+## Returns the layer that a camera must show to have the frame.
+func layer() -> int:
+	return _layer
 
 
 ## Leaves only [param rectangle] of images of [param size] in a world.

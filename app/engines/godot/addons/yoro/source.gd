@@ -47,7 +47,7 @@ func draw(of: YoroLevels, at: Transform3D, like: YoroCamera3D, shown: Viewport, 
 		var image := levels.inset_image if eye == inset else levels.wide
 		var part := levels.inset_part if eye == inset else Rect2i(Vector2i.ZERO, levels.wide.size)
 		eye.synthesis.map = like.debug_view == YoroCamera3D.DebugView.HOLES
-		eye.follow(like, shown, effects, YoroMask.LAYER if image != views else 0)
+		eye.follow(like, shown, effects, _mask.layer() if image != views else 0)
 		if image != views:
 			_mask.follow(eye.world_3d, part, image.size)
 		# Levels of detail are those of the eye's own pixels in each level. The viewport has half of these.
