@@ -9,6 +9,7 @@ use super::*;
 use crate::cardboard::{Cardboard, HeldHead};
 use crate::event::{Action, Event};
 use crate::frame::{FrameTiming, PresentReport};
+use yoro::eyes::FoveationLevel;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
@@ -463,6 +464,23 @@ fn the_menu_is_chosen_from_by_looking_and_keeps_what_it_changes() {
     assert!(look(&mut run, 0.0, 0.0, 2) == synthesized);
     drop(run);
     assert_eq!((gl.object_count(), gl.take_errors()), (0, None));
+}
+
+#[test]
+fn no_quality_of_the_menu_contradicts_positional_timewarp() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let mut run = Run::new(headless.gl(), &["hud=false", "timewarp=position"]);
+    run.load();
+    run.frame();
+    run.viewer.event(Event::LongPress).unwrap();
+    let turn = Quat::from_rotation_y(-15f32.to_radians()) * Quat::from_rotation_x(-3.5f32.to_radians());
+    run.viewer.hold_head(Some(HeldHead { rendered: turn, displayed: turn }));
+    for render_scale in [1.0, 1.4, 0.7] {
+        run.frame();
+        assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Settings);
+        let settings = run.viewer.viewer().settings();
+        assert_eq!((settings.render_scale, settings.foveation), (render_scale, Some(FoveationLevel::Off)));
+    }
 }
 
 #[test]

@@ -11,7 +11,7 @@ use logic::{Choice, Item, Look};
 use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_gl::Destination;
 use yoro_render::stereo::StereoSession;
-use yoro_settings::{HoleMethod, Pipeline, Setting, Settings};
+use yoro_settings::{HoleMethod, Pipeline, Setting, Settings, Timewarp};
 
 /// A quality level: its name, and the settings that it stands for.
 struct QualityLevel {
@@ -168,11 +168,14 @@ impl Viewer {
                 // The paper's pipeline has no others.
                 let is_gather = self.settings.pipeline == Pipeline::Gather;
                 let holes = if is_gather { level.holes } else { HoleMethod::Filled };
+                // Positional timewarp moves whole eyes.
+                let is_moved = self.settings.timewarp == Timewarp::Position;
+                let foveation = if is_moved { "off" } else { level.foveation };
                 self.want(&[
                     ("render-scale", level.render_scale.to_string()),
                     ("adaptive", level.adaptive.to_string()),
                     ("msaa", level.msaa.to_string()),
-                    ("foveation", level.foveation.into()),
+                    ("foveation", foveation.into()),
                     ("holes", holes.name().into()),
                 ])
             }
