@@ -337,14 +337,14 @@ impl StereoSession {
         if let Some(auto) = &mut self.auto {
             auto.end_frame(load);
         }
+        if !self.options.motion_vectors || self.options.frame_rate != FrameRate::Auto {
+            return;
+        }
         // While a path is in use that is not the cheapest, the chooser gives up that path before the rate is halved.
         let is_settled = self.auto.as_ref().is_none_or(|auto| !auto.is_measuring() && !auto.has_cheaper());
         if !is_settled {
             self.rate.interrupt();
-        } else if self.options.motion_vectors
-            && self.options.frame_rate == FrameRate::Auto
-            && self.rate.frame(load)
-        {
+        } else if self.rate.frame(load) {
             let which = if self.rate.is_half { "every second frame" } else { "every frame" };
             log::info!("frame-rate: {which} is rendered");
         }
