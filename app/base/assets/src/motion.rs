@@ -40,6 +40,11 @@ pub struct Track {
 }
 
 impl Track {
+    /// Returns the number of keys up to a time of its clock.
+    fn passed(&self, now: f32) -> usize {
+        self.times.partition_point(|&time| time <= now)
+    }
+
     /// Writes the value at the current time of its clock.
     fn sample(&self, clocks: &[f32], out: &mut [f32]) {
         let width = out.len();
@@ -49,7 +54,7 @@ impl Track {
         };
         let value = |key: usize| part(key, usize::from(spline));
         let (now, keys) = (clocks[self.clock], self.times.len());
-        let after = self.times.partition_point(|&time| time <= now);
+        let after = self.passed(now);
         if after == 0 || after == keys || self.interpolation == Interpolation::Step {
             out.copy_from_slice(value(after.saturating_sub(1)));
             return;
@@ -83,9 +88,9 @@ impl Track {
         }
         let round = |seconds: f64| (seconds / f64::from(length)).floor();
         let value = |seconds: f64| {
-            let after = self.times.partition_point(|&time| time <= clock(length, seconds));
+            let before = self.passed(clock(length, seconds)).saturating_sub(1);
             let width = self.values.len() / self.times.len();
-            &self.values[after.saturating_sub(1) * width..][..width]
+            &self.values[before * width..][..width]
         };
         round(from) != round(to) || self.interpolation == Interpolation::Step && value(from) != value(to)
     }
@@ -98,7 +103,7 @@ impl Track {
 
     fn rotation(&self, clocks: &[f32]) -> Quat {
         let mut out = [0.0; 4];
-        let after = self.times.partition_point(|&time| time <= clocks[self.clock]);
+        let after = self.passed(clocks[self.clock]);
         if self.interpolation == Interpolation::Linear && after > 0 && after < self.times.len() {
             let key = |key: usize| unit(Quat::from_slice(&self.values[key * 4..]));
             let length = self.times[after] - self.times[after - 1];
