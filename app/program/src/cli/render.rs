@@ -174,6 +174,10 @@ impl Subcommand for RenderArgs {
         let headless = self.gl.open()?;
         let gl = headless.gl();
         settings.supports(self.method, gl.capabilities())?;
+        if self.video.is_none() {
+            // A folder that cannot be is found out before anything is rendered.
+            yoro_files::create_folder(&self.out)?;
+        }
         let mut prepared = PreparedScene::new(gl, scene, &settings)?;
         prepared.set_time(self.time)?;
         warn_of_blank(gl, self, &mut prepared, &heads)?;
