@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use anyhow::{anyhow, bail};
 use yoro::eyes::Eye;
 use yoro_report::{Pictures, Report, ReportError, ReportFiles, Section, Text};
 
@@ -10,7 +11,6 @@ use super::record::{Results, metric};
 use super::results::{self, CONVENTIONAL, MONO, SuiteData};
 use super::suites::EXPERIMENTS;
 use super::tables;
-use yoro_media::PictureError;
 
 /// The heading of the page.
 const TITLE: &str = "yoro: every method side by side";
@@ -23,18 +23,6 @@ its own scenes, six phones and a Quest 2.";
 const TIME_METHOD: &str = "Frame times: wall clock of a whole stereo frame up to glFinish. Methods take turns within \
 each round, so that ratios pair frames of the same round; means of ratios over scenes are geometric.";
 
-/// The error when files of results give no report.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum BenchReportError {
-    /// A file has no finished round, or the pictures of a setting cannot be compared. Holds the sentence.
-    #[error("{0}")]
-    Unusable(String),
-    /// A picture beside a file cannot be read.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
-}
-
 /// The combined contents of files of results.
 pub struct BenchReport {
     files: Vec<Results>,
@@ -46,13 +34,10 @@ impl BenchReport {
     /// Combines files and loads the pictures beside them.
     ///
     /// # Errors
-    /// [`BenchReportError`] for a file without a finished round, and for damaged pictures.
-    pub fn new(files: Vec<Results>) -> Result<BenchReport, BenchReportError> {
+    /// One sentence, for a file without a finished round and for damaged pictures.
+    pub fn new(files: Vec<Results>) -> anyhow::Result<BenchReport> {
         if let Some(empty) = files.iter().find(|file| file.measurements().next().is_none()) {
-            return Err(BenchReportError::Unusable(format!(
-                "{} holds no finished round: let yoro bench finish one, then report",
-                empty.path.display()
-            )));
+            bail!("{} holds no finished round: let yoro bench finish one, then report", empty.path.display());
         }
         let suites = results::suites(&files);
         let mut pictures = Vec::new();
@@ -162,7 +147,7 @@ fn answers(suite: &SuiteData) -> Vec<String> {
 }
 
 /// Loads the pictures beside a file, in the order of its settings.
-fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
+fn load_pictures(file: &Results) -> anyhow::Result<Vec<Pictures>> {
     let mut all = Vec::new();
     let dominant_eye = file.header.parameters.iter().find(|parameter| parameter.name == "dominant eye");
     let dominant_eye = match dominant_eye {
@@ -192,10 +177,10 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictures>, BenchReportError> {
         let viewpoint = Viewpoint { dominant_eye, dominant, truth, views };
         let shown = viewpoint.shown(setting.scene.clone(), format!("{note}, {frame}"));
         all.push(shown.map_err(|error| {
-            BenchReportError::Unusable(format!(
+            anyhow!(
                 "the pictures in {} do not go together ({error}): measure again, or remove the folder",
                 folder.display()
-            ))
+            )
         })?);
     }
     Ok(all)

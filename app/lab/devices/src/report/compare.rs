@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Device;
 use super::run::{Quantity, Run};
-use yoro_report::{Basis, BlockInterval, Interval, Sample, mean_of_blocks};
+use yoro_report::{BlockInterval, Interval, Sample, mean_of_blocks};
 
 /// The mean of a method in a scene over all runs that count.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -24,8 +24,7 @@ pub struct Mean {
 /// The comparison of a method with the baseline, by pairs of runs of the same device, scene and repetition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Difference {
-    /// Device, or `None` for the mean of all devices.
-    pub device: Option<String>,
+    pub device: String,
     /// Scene, or `None` for the mean of all scenes.
     pub scene: Option<String>,
     pub method: String,
@@ -108,7 +107,7 @@ pub fn differences(runs: &[Run], device: &Device, baseline: &str) -> Vec<Differe
                     mean_of_blocks(&blocks).map(|(mean, _)| mean)
                 };
                 Some(Difference {
-                    device: Some(device.name.clone()),
+                    device: device.name.clone(),
                     scene: scene.cloned(),
                     method: method.clone(),
                     quantity,
@@ -125,40 +124,6 @@ pub fn differences(runs: &[Run], device: &Device, baseline: &str) -> Vec<Differe
         }
     }
     differences
-}
-
-/// Returns the means over devices of their means over scenes. The intervals are based on the scatter of the devices.
-pub fn over_devices(differences: &[Difference], devices: &[&Device]) -> Vec<Difference> {
-    let mut found = Vec::new();
-    let of_devices = differences.iter().filter(|difference| {
-        difference.scene.is_none() && devices.iter().any(|d| Some(&d.name) == difference.device.as_ref())
-    });
-    let mut groups: BTreeMap<(&str, Quantity), Vec<&Difference>> = BTreeMap::new();
-    for difference in of_devices {
-        groups.entry((&difference.method, difference.quantity)).or_default().push(difference);
-    }
-    for ((method, quantity), group) in groups {
-        let mean = |value: fn(&Difference) -> f64| {
-            group.iter().map(|difference| value(difference)).sum::<f64>() / group.len() as f64
-        };
-        let changes: Vec<f64> = group.iter().map(|d| scale(quantity, d.change)).collect();
-        let Some(sample) = Sample::of(&changes).filter(|sample| sample.n > 1) else { continue };
-        let back = |value: f64| unscale(quantity, value);
-        found.push(Difference {
-            device: None,
-            scene: None,
-            method: method.into(),
-            quantity,
-            pairs: group.iter().map(|difference| difference.pairs).sum(),
-            ours: mean(|difference| difference.ours),
-            baseline: mean(|difference| difference.baseline),
-            change: back(sample.mean),
-            interval: sample
-                .interval()
-                .map(|interval| BlockInterval { interval: interval.map(back), basis: Basis::Blocks }),
-        });
-    }
-    found
 }
 
 /// Returns the mean change over blocks of pairs, and its interval.
@@ -178,11 +143,7 @@ fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Optio
     Some((back(mean), interval.map(|interval| interval.map(back))))
 }
 
-/// Returns the value of a change that is averaged: for ratios the logarithm, so that half and double cancel out.
-fn scale(quantity: Quantity, change: f64) -> f64 {
-    if quantity.is_ratio() { (change / 100.0).ln_1p() } else { change }
-}
-
+/// Returns a change by the mean that stands for it: for ratios of their logarithms, so that half and double cancel out.
 fn unscale(quantity: Quantity, value: f64) -> f64 {
     if quantity.is_ratio() { 100.0 * value.exp_m1() } else { value }
 }

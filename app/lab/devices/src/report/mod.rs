@@ -104,13 +104,8 @@ impl DeviceReport {
         let devices = devices(captures, name, cells_of, baseline);
 
         let means = devices.iter().flat_map(|device| compare::means(&runs, device)).collect();
-        let mut differences: Vec<Difference> =
+        let differences =
             devices.iter().flat_map(|device| compare::differences(&runs, device, baseline)).collect();
-        // Simulated and measured runs are never averaged together.
-        for simulated in [false, true] {
-            let alike: Vec<&Device> = devices.iter().filter(|d| d.simulated == simulated).collect();
-            differences.extend(compare::over_devices(&differences, &alike));
-        }
         let mut report = DeviceReport {
             simulated: devices.iter().any(|device| device.simulated),
             baseline: baseline.into(),

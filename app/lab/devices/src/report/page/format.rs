@@ -72,7 +72,7 @@ pub fn answers(report: &DeviceReport) -> Vec<String> {
 }
 
 fn answer(report: &DeviceReport, device: &Device, method: &str) -> String {
-    let find = |quantity| report.find(Some(&device.name), None, method, quantity);
+    let find = |quantity| report.find(&device.name, None, method, quantity);
     let changes = [Quantity::Power, Quantity::Fps].map(|quantity| match find(quantity) {
         None => format!("{} – (no two runs to compare)", quantity.name()),
         Some(found) => format!("{} **{}** ({})", quantity.name(), change(found), values(found)),

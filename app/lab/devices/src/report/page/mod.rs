@@ -104,23 +104,18 @@ fn warnings(report: &DeviceReport) -> Vec<String> {
 impl DeviceReport {
     fn find(
         &self,
-        device: Option<&str>,
+        device: &str,
         scene: Option<&str>,
         method: &str,
         quantity: Quantity,
     ) -> Option<&Difference> {
         self.differences.iter().find(|d| {
-            d.device.as_deref() == device
-                && d.scene.as_deref() == scene
-                && d.method == method
-                && d.quantity == quantity
+            d.device == device && d.scene.as_deref() == scene && d.method == method && d.quantity == quantity
         })
     }
 
     fn scenes_of(&self, device: &str, method: &str, quantity: Quantity) -> usize {
-        let of = |d: &&Difference| {
-            d.device.as_deref() == Some(device) && d.method == method && d.quantity == quantity
-        };
+        let of = |d: &&Difference| d.device == device && d.method == method && d.quantity == quantity;
         self.differences.iter().filter(of).filter(|d| d.scene.is_some()).count()
     }
 

@@ -9,7 +9,7 @@ use yoro_report::{Axis, Entry, Plot};
 pub fn change_plots(report: &DeviceReport, device: &Device) -> Vec<Plot> {
     let quantities = [Quantity::Power, Quantity::Fps, Quantity::Temperature].into_iter();
     let is_measured = |quantity: &Quantity| {
-        report.differences.iter().any(|d| d.device.as_ref() == Some(&device.name) && d.quantity == *quantity)
+        report.differences.iter().any(|d| d.device == device.name && d.quantity == *quantity)
     };
     quantities.filter(is_measured).map(|quantity| change_plot(report, device, quantity)).collect()
 }
@@ -26,7 +26,7 @@ fn change_plot(report: &DeviceReport, device: &Device, quantity: Quantity) -> Pl
     for scene in device.scenes.iter().map(|scene| Some(scene.as_str())).chain([None]) {
         let row = scene.unwrap_or(ALL_SCENES);
         for method in device.methods.iter().filter(|method| **method != report.baseline) {
-            if let Some(ours) = report.find(Some(&device.name), scene, method, quantity) {
+            if let Some(ours) = report.find(&device.name, scene, method, quantity) {
                 let interval = ours.interval.map(|found| found.interval);
                 plot.mark_interval(row, Entry::ours(method), ours.change, interval);
             }

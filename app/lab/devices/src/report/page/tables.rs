@@ -20,17 +20,10 @@ const SECOND_HALF: [Quantity; 5] =
 pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
     let methods = report.devices.iter().flat_map(|device| &device.methods);
     let methods = unique(methods.filter(|method| **method != report.baseline));
-    let means: Vec<&Difference> = report.differences.iter().filter(|d| d.device.is_none()).collect();
     let mut tables = Vec::new();
     for method in methods {
         let mut columns = vec!["<against ".to_owned() + &report.baseline];
         columns.extend(report.devices.iter().map(|device| device.name.clone()));
-        let over_devices =
-            |quantity| means.iter().filter(move |d| d.method == *method && d.quantity == quantity);
-        let mean_columns = over_devices(Quantity::Fps).count().max(over_devices(Quantity::Power).count());
-        for i in 0..mean_columns {
-            columns.push(if i == 0 { "mean of the devices" } else { "mean of the simulated" }.into());
-        }
         // The paper has this table only for its own method.
         let papers: &[PaperDevice] = if method.starts_with("yoro") { &PAPER.devices } else { &[] };
         columns.extend(papers.iter().map(|device| format!("{}, the paper's", device.name)));
@@ -41,7 +34,6 @@ pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
         cells.extend(
             report.devices.iter().map(|d| Cell::plain(capacity(d.capacity_mah).unwrap_or("–".into()))),
         );
-        cells.extend((0..mean_columns).map(|_| Cell::plain("")));
         cells.extend(papers.iter().map(|d| Cell::paper(capacity(Some(d.capacity_mah)))));
         table.push(cells);
         type Printed = fn(&PaperDevice) -> f64;
@@ -54,16 +46,13 @@ pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
             let text = |d: &Difference| format!("{}{}", change(d), change_interval(d));
             let mut cells = vec![Cell::plain(name)];
             for device in &report.devices {
-                cells.push(Cell::ours(report.find(Some(&device.name), None, method, quantity).map(text)));
+                cells.push(Cell::ours(report.find(&device.name, None, method, quantity).map(text)));
             }
-            let mut means: Vec<Cell> = over_devices(quantity).map(|d| Cell::ours(Some(text(d)))).collect();
-            means.resize(mean_columns, Cell::ours(None::<String>));
-            cells.extend(means);
             cells.extend(papers.iter().map(|d| Cell::paper(Some(format!("{:+.1} %", printed(d))))));
             table.push(cells);
         }
         table.note = format!(
-            "In brackets: {:.0} % interval of the change; {} rests on the scatter of scenes or devices instead of \
+            "In brackets: {:.0} % interval of the change; {} rests on the scatter of scenes instead of \
              repetitions.",
             100.0 * CONFIDENCE,
             OVER_BLOCKS.trim(),
@@ -111,7 +100,7 @@ fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantit
         columns.extend(["the paper's power", "the paper's frame rate"].map(str::to_owned));
     }
     let row = |scene: Option<&str>, method: &String| {
-        let find = |quantity| report.find(Some(&device.name), scene, method, quantity);
+        let find = |quantity| report.find(&device.name, scene, method, quantity);
         let pairs = quantities.iter().filter_map(|q| find(*q)).map(|d| d.pairs).max()?;
         let first = [scene.unwrap_or(ALL_SCENES).to_owned(), method.clone(), pairs.to_string()];
         let mut cells = first.map(Cell::plain).to_vec();
