@@ -175,7 +175,7 @@ fn only_what_browsers_send_is_served_beside_silent_clients() {
 #[test]
 fn eyes_that_would_need_too_many_pixels_end_the_session_alone() {
     let dir = tempfile::tempdir().unwrap();
-    let serving = Serving::start(dir.path(), "prototype --mode eyes-depth");
+    let serving = Serving::start(dir.path(), "prototype --mode eyes");
     // 0.06 degrees wide, 61 degrees to the side.
     let narrow = Frustum { left: 1.8, right: 1.8011, bottom: -0.0006, top: 0.0006 };
     let mut socket = serving.connect_again();

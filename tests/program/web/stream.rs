@@ -260,23 +260,6 @@ fn two_eyes_are_turned_with_the_head() {
 }
 
 #[test]
-fn two_eyes_are_moved_with_the_head_by_the_depth_of_one() {
-    let Some((mut page, _)) = open("eyes-depth") else { return };
-    let mut desktop = Desktop::new(Mode::EyesDepth);
-    let [pair, moved] = check(&mut page, &mut desktop);
-    let other = pair.dominant.other();
-    for (step, pair, least) in [(0.0, pair, 38.0), (STEP, moved, 28.0)] {
-        page.evaluate(&format!("yoro.page.walk({step}, 0, 0); 0"));
-        let shown = &page.eyes(pair.size)[other.index()];
-        let real = desktop.real(&pair, other);
-        let db = psnr(shown, &real, Channels::Luma).unwrap().0;
-        eprintln!("the other eye after {step} m: {db:.2} dB");
-        assert!(db > least, "{db} dB after {step} m");
-    }
-    page.browser.expect_silence();
-}
-
-#[test]
 fn a_headset_shows_a_stream() {
     let Some(script) = headset::emulator() else { return };
     // Prints a message if the page is missing.

@@ -42,10 +42,8 @@ pub struct StreamedEyes {
     rgb: Option<Texture>,
     /// The colour of each eye in the picture.
     colors: [RenderTarget; 2],
-    /// The first eye's depth. Two eyes without depth are treated as infinitely far away.
+    /// The eye's depth. Two eyes without depth are treated as infinitely far away.
     depth: RenderTarget,
-    /// The second eye synthesized from the first, for its depth, which is not in the picture.
-    moved: RenderTarget,
     newest: Option<(Content, [u16; 2])>,
     /// True if pictures are surrounded by black. Otherwise their border is repeated outward.
     pub framed: bool,
@@ -63,8 +61,8 @@ impl StreamedEyes {
     /// # Errors
     /// [`GlError`] if the driver refuses.
     pub fn new(gl: &Rc<Context>) -> Result<StreamedEyes, GlError> {
-        let target = |format, filter, depth| RenderTarget::new(gl, [1, 1], &[(format, filter)], depth);
-        let color = || target(Format::Rgba8, Filter::Linear, None);
+        let target = |format, filter| RenderTarget::new(gl, [1, 1], &[(format, filter)], None);
+        let color = || target(Format::Rgba8, Filter::Linear);
         // Frames and eyes alternate between several sizes.
         let options = Options { parts: true, ..Options::default() };
         Ok(StreamedEyes {
@@ -79,8 +77,7 @@ impl StreamedEyes {
             planes: None,
             rgb: None,
             colors: [color()?, color()?],
-            depth: target(Format::R8, Filter::Nearest, None)?,
-            moved: target(Format::Rgba8, Filter::Nearest, Some(Format::Depth24))?,
+            depth: target(Format::R8, Filter::Nearest)?,
             newest: None,
             framed: false,
             pair: None,
@@ -89,8 +86,7 @@ impl StreamedEyes {
         })
     }
 
-    /// Takes a decoded picture whose parts have this size. False if the picture has another size, or the eyes see too
-    /// little of each other's view.
+    /// Takes a decoded picture whose parts have this size. False if the picture has another size.
     ///
     /// # Errors
     /// [`GlError`] if the GPU has no memory for it.
@@ -102,8 +98,7 @@ impl StreamedEyes {
     ) -> Result<bool, GlError> {
         let part = size.map(u32::from);
         let [column, rows] = part.map(|n| n.next_multiple_of(2));
-        let whole = [content.parts() * column, rows];
-        let Ok(depth_warp) = content.depth_warp(size) else { return Ok(false) };
+        let whole = [2 * column, rows];
         let (program, textures) = match *picture {
             DecodedPicture::Planes(planes) => {
                 let luma = (whole[0] * whole[1]) as usize;
@@ -150,20 +145,16 @@ impl StreamedEyes {
             self.gl.draw_screen();
             Ok(())
         };
-        for (color, index) in self.colors.iter_mut().zip(content.eye_parts()) {
-            draw(*index, false, color)?;
-        }
-        if let Content::Eyes(_) = content {
-            self.depth.resize(part)?;
-            self.depth.bind();
-            self.gl.clear(None);
-        } else {
-            draw(1, true, &mut self.depth)?;
-        }
-        if let Some(warp) = depth_warp {
-            self.moved.resize(part)?;
-            let source = Source::new(self.colors[0].color(0).raw(), self.depth.color(0).raw());
-            self.any_view.synthesize(source, &warp, &Destination::whole(&self.moved))?;
+        let [first, second] = &mut self.colors;
+        draw(0, false, first)?;
+        match content {
+            Content::Depth(..) => draw(1, true, &mut self.depth)?,
+            Content::Eyes(_) => {
+                draw(1, false, second)?;
+                self.depth.resize(part)?;
+                self.depth.bind();
+                self.gl.clear(None);
+            }
         }
         self.newest = Some((content, size));
         Ok(true)
@@ -190,11 +181,7 @@ impl StreamedEyes {
             self.gl.clear_rectangle(to.origin, to.size, Some(pair.depth.clear_value()));
             let Some((content, size)) = self.newest else { continue };
             let Ok((part, warp)) = content.warp(size, eye, &pair.view(eye)) else { continue };
-            let depth = match content {
-                Content::EyesDepth { .. } if part == 1 => self.moved.depth(),
-                _ => self.depth.color(0),
-            };
-            let source = Source::new(self.colors[part].color(0).raw(), depth.raw());
+            let source = Source::new(self.colors[part].color(0).raw(), self.depth.color(0).raw());
             self.any_view.synthesize(source, &warp, to)?;
         }
         Ok(())

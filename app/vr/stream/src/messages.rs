@@ -102,7 +102,7 @@ pub enum FromClient {
     Report(Report),
 }
 
-/// What the parts of a frame's picture show. The parts are side by side from the left and of one size. Eyes are wider
+/// What the two parts of a frame's picture show. They are side by side and of one size. Eyes are wider
 /// than requested.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Content {
@@ -110,15 +110,6 @@ pub enum Content {
     Depth(EyeView, [f32; 2]),
     /// The left eye and the right eye.
     Eyes([EyeView; 2]),
-    /// The dominant eye, its depth as in [`Content::Depth`], and the other eye.
-    EyesDepth {
-        /// The eye that has depth.
-        dominant: Eye,
-        /// Left and right eye.
-        eyes: [EyeView; 2],
-        /// The distances of the depth.
-        span: [f32; 2],
-    },
 }
 
 /// What an eye is made from.
@@ -133,43 +124,12 @@ pub struct EyeSource {
 }
 
 impl Content {
-    /// Returns the number of parts.
-    pub fn parts(&self) -> u32 {
-        match self {
-            Content::Depth(..) | Content::Eyes(_) => 2,
-            Content::EyesDepth { .. } => 3,
-        }
-    }
-
-    /// Returns the indices of the parts that show eyes.
-    pub fn eye_parts(&self) -> &'static [u32] {
-        match self {
-            Content::Depth(..) => &[0],
-            Content::Eyes(_) => &[0, 1],
-            Content::EyesDepth { .. } => &[0, 2],
-        }
-    }
-
     /// Returns what an eye is made from.
     pub fn source(&self, eye: Eye) -> EyeSource {
         match *self {
             Content::Depth(view, span) => EyeSource { part: 0, view, span: Some(span) },
             Content::Eyes(eyes) => EyeSource { part: eye.index(), view: eyes[eye.index()], span: None },
-            Content::EyesDepth { dominant, eyes, span } => {
-                EyeSource { part: usize::from(eye != dominant), view: eyes[eye.index()], span: Some(span) }
-            }
         }
-    }
-
-    /// Returns the warp that moves the dominant eye's depth to the other eye, if both eyes are shown but only the
-    /// dominant one has depth.
-    ///
-    /// # Errors
-    /// [`EyesError`] for eyes that see too little of each other's view.
-    pub fn depth_warp(&self, size: [u16; 2]) -> Result<Option<PoseWarp>, EyesError> {
-        let Content::EyesDepth { dominant, eyes, span } = self else { return Ok(None) };
-        let view = |eye: Eye| eyes[eye.index()].view(size, *span);
-        PoseWarp::new(&view(*dominant), &view(dominant.other())).map(Some)
     }
 
     /// Returns a view's source among the parts that show eyes, and the warp, a rotation only if there is no depth.
@@ -379,18 +339,9 @@ mod tests {
         let eyes = FrameHeader { content: Content::Eyes([EYE; 2]), ..HEADER };
         let frame =
             |header| FromServer::Frame { number: 70_000, intra: true, header, data: &[0, 0, 0, 1, 9] };
-        let content = Content::EyesDepth { dominant: Eye::Right, eyes: [EYE; 2], span: [0.5, 40.0] };
-        let eyes_depth = FrameHeader { content, ..HEADER };
         let refused = FromServer::Refused(Refusal::Busy);
         let video = FromServer::Video([EYE.frustum; 2], Eye::Left);
-        vec![
-            FromServer::Welcome(Pose::IDENTITY),
-            video,
-            refused,
-            frame(HEADER),
-            frame(eyes),
-            frame(eyes_depth),
-        ]
+        vec![FromServer::Welcome(Pose::IDENTITY), video, refused, frame(HEADER), frame(eyes)]
     }
 
     #[test]

@@ -37,8 +37,6 @@ pub enum Mode {
     Depth,
     /// Both eyes, rotated to the newest pose: the baseline.
     Eyes,
-    /// Both eyes and the depth of one, from which each eye is made at the newest pose.
-    EyesDepth,
 }
 
 /// The largest motion of the head between rendering and display that the guard band covers: 4 degrees and 2 cm.
@@ -110,11 +108,8 @@ impl FrameRenderer {
         }
         // The view is wide enough to synthesize the other eye from it. Eyes that are not parallel cannot be synthesized
         // from each other and are taken as they are.
-        let source = |dominant: Eye| {
-            let views = EyePair { dominant, ..pair }.synthesis_views(GuardBand::Distance(NEAREST));
-            guarded(&views.map_or(pair.view(dominant), |views| views.source), MOTION)
-        };
-        let view = source(pair.dominant)?;
+        let views = pair.synthesis_views(GuardBand::Distance(NEAREST));
+        let view = guarded(&views.map_or(pair.view(pair.dominant), |views| views.source), MOTION)?;
         let color = self.color(prepared, &view)?;
         let depth = depth_image(&self.reader.depth(), view.size);
         let far = view.depth.clear_value();
@@ -127,18 +122,7 @@ impl FrameRenderer {
             Luma([depth_luma(distance(depth.get_pixel(x, y).0[0]), span)])
         });
         let planes = color.beside(&Planes::of_gray(&luma));
-        let picture =
-            Picture { planes, content: Content::Depth(eye_view(&view), span), size: size(&view), new_span };
-        if self.mode == Mode::Depth {
-            return Ok(picture);
-        }
-        let dominant = pair.dominant;
-        // Mirrored eyes have the same size. Other eyes get it, too, with pixels that are not square.
-        let other = View { size: view.size, ..source(dominant.other())? };
-        let planes = picture.planes.beside(&self.color(prepared, &other)?);
-        let mut eyes = [eye_view(&view); 2];
-        eyes[dominant.other().index()] = eye_view(&other);
-        Ok(Picture { planes, content: Content::EyesDepth { dominant, eyes, span }, ..picture })
+        Ok(Picture { planes, content: Content::Depth(eye_view(&view), span), size: size(&view), new_span })
     }
 
     fn color(&mut self, prepared: &mut PreparedScene, view: &View) -> Result<Planes, StreamError> {

@@ -79,12 +79,7 @@ enum ModeArg {
     Depth,
     /// Both eyes, corrected by rotation alone
     Eyes,
-    /// Both eyes and the depth of one, from which each eye is made
-    EyesDepth,
 }
-
-/// The longest side of an eye in pixels if three parts are side by side: hardware decodes at most 4096 columns.
-const MAX_SIDE_OF_THREE_PARTS: u16 = 1024;
 
 impl Subcommand for ServeArgs {
     fn run(&self) -> anyhow::Result<()> {
@@ -193,13 +188,7 @@ fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServ
     let mode = match args.mode {
         ModeArg::Depth => Mode::Depth,
         ModeArg::Eyes => Mode::Eyes,
-        ModeArg::EyesDepth => Mode::EyesDepth,
     };
-    ensure!(
-        mode != Mode::EyesDepth || args.max_size <= MAX_SIDE_OF_THREE_PARTS,
-        "browsers do not decode three pictures of {} pixels: give --max-size {MAX_SIDE_OF_THREE_PARTS} or less with --mode eyes-depth",
-        args.max_size
-    );
     let settings = args.renderer.render_settings();
     let scene = yoro_scenes::load(&args.scene, yoro_scenes::DEFAULT_SEED, None)?;
     let home = eyes::scene_pose(&scene, args.pose)?;

@@ -32,11 +32,7 @@ const FRAMES: [usize; 2] = [8, 3];
 /// H.264's quantizers.
 const QUANTIZERS: [u8; 3] = [20, 26, 32];
 /// The modes. The bits that the others save are relative to those of the first.
-const MODES: [(Mode, &str); 3] = [
-    (Mode::Eyes, "two eyes, rotation"),
-    (Mode::Depth, "one eye and depth"),
-    (Mode::EyesDepth, "two eyes, depth of one"),
-];
+const MODES: [(Mode, &str); 2] = [(Mode::Eyes, "two eyes, rotation"), (Mode::Depth, "one eye and depth")];
 const SAME_IMAGE: &str = "same image, not encoded";
 
 /// The bits of a stream, and the quality of what it shows some frames later.
@@ -133,8 +129,8 @@ impl Experiment for Stream {
         let mut section = Section::new(
             "Streaming",
             "Frames of a walking head (1.35 m/s, 72 frames a second) as `yoro serve` sends them, encoded by openh264 at one \
-             quantizer: one eye and its depth, from which both eyes are made at the pose where they are shown; both eyes, \
-             turned to that pose; and both eyes with the depth of one. Quality is the mean of both eyes against real renders \
+             quantizer: one eye and its depth, from which both eyes are made at the pose where they are shown; and both \
+             eyes, turned to that pose. Quality is the mean of both eyes against real renders \
              at that pose, at once and 2 and 5 frames (28 and 69 ms) later. The first frame's bits, an intra frame's, do not \
              count. No times are measured.",
         );
