@@ -76,7 +76,7 @@ enum Task {
         #[arg(long = "target", value_name = "NAME", value_delimiter = ',')]
         targets: Vec<package::Target>,
     },
-    /// Build everything that is published, with checksums, bills of materials and RELEASE.md
+    /// Build everything that is published, with checksums and RELEASE.md
     Release {
         /// Where to put the files
         #[arg(long, value_name = "DIR", default_value = "dist")]

@@ -1,6 +1,6 @@
-//! The licences of others: what dependencies may have, and the notices that go along with each file that contains them.
+//! The notices of others' licences, which go along with each file that contains their code.
 
-use crate::{cargo, console};
+use crate::cargo;
 
 /// The name of the notices in archives, in the APK and beside the page.
 pub const FILE: &str = "NOTICES.txt";
@@ -10,11 +10,4 @@ pub fn text(package: &str, target: &str, features: &[&str]) -> anyhow::Result<St
     let arguments = [&["notices", package, target], features].concat();
     let (text, _) = cargo::helper("yoro-publish", &arguments)?;
     Ok(text)
-}
-
-/// Checks the licences of all dependencies, and prints those that are not accepted. Returns true if all are.
-pub fn are_accepted() -> anyhow::Result<bool> {
-    let (report, passed) = cargo::helper("yoro-publish", &["licences"])?;
-    console::print(&report);
-    Ok(passed)
 }

@@ -11,7 +11,7 @@ use crate::package::linux::Machine;
 use crate::package::{Target, VERSION, package, zip};
 use crate::{cargo, kit, lint};
 
-use super::{bills, program};
+use super::program;
 
 /// A part of a release, in the order in which they are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -32,8 +32,6 @@ pub enum Item {
     Crates,
     /// The package for three.js
     Three,
-    /// The bills of materials (SBOM)
-    Bills,
     /// The site
     Site,
 }
@@ -69,7 +67,6 @@ impl Item {
             Item::Godot => package(&[Target::Godot]),
             Item::Crates => crates(),
             Item::Three => package(&[Target::Three]),
-            Item::Bills => bills::make(&folder),
             Item::Site => Ok(Vec::new()),
         }
     }

@@ -1,6 +1,5 @@
 //! Everything that is published, in one folder: `cargo xtask release`.
 
-mod bills;
 mod items;
 mod program;
 mod summary;

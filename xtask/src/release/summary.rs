@@ -8,7 +8,6 @@ use anyhow::Context as _;
 
 use crate::package::texts::filled;
 
-use super::bills::{ENDING, FORMAT};
 use super::items::description;
 
 /// Returns the text for the files in a folder, which were built from a commit.
@@ -16,14 +15,11 @@ pub fn text(out: &Path, commit: &str) -> anyhow::Result<String> {
     let mut rows = String::new();
     for path in super::files(out)? {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if name.ends_with(ENDING) {
-            continue;
-        }
         let size = fs::metadata(&path).with_context(|| format!("{} cannot be read", path.display()))?.len();
         // Writing to a string cannot fail.
         let _ = writeln!(rows, "| `{name}` | {size} | {} |", description(&path)?);
     }
-    let values = [("ORIGIN", &*origin(commit)), ("FORMAT", FORMAT), ("ROWS", &rows)];
+    let values = [("ORIGIN", &*origin(commit)), ("ROWS", &rows)];
     Ok(filled(include_str!("RELEASE.md"), &values))
 }
 

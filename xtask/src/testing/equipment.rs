@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::process::Command;
 use std::thread::{Scope, ScopedJoinHandle};
-use std::time::Instant;
 
 use anyhow::{Context as _, anyhow, bail};
 
@@ -96,8 +95,6 @@ pub struct Preparation<'scope> {
 pub struct Equipment {
     /// Names and variables with their paths; `None` if the item is not available.
     pub items: Vec<(&'static str, &'static str, Option<PathBuf>)>,
-    /// How long each item was built, in seconds.
-    pub seconds: Vec<(&'static str, f64)>,
 }
 
 impl<'scope> Preparation<'scope> {
@@ -110,7 +107,7 @@ impl<'scope> Preparation<'scope> {
         let libraries = || {
             let osmesa = ("OSMesa", "OSMESA", setup::ensure()?.then(PathBuf::new));
             let vulkan = ("Vulkan or its validation layer", "VULKAN", setup::vulkan().then(PathBuf::new));
-            Ok(Equipment { items: vec![osmesa, vulkan], seconds: Vec::new() })
+            Ok(Equipment { items: vec![osmesa, vulkan] })
         };
         // A few selected tests are not worth the wait for a browser, so they only use an installed one.
         let wanted = |item: &&Item| {
@@ -134,7 +131,6 @@ impl<'scope> Preparation<'scope> {
         let mut equipment = Equipment::default();
         for (item, fetching) in self.items {
             let fetched = join(fetching);
-            let start = Instant::now();
             let path = match (fetched, item.build) {
                 (Ok(_), Some(build)) => Some(build()?),
                 (Ok(path), None) => Some(path),
@@ -144,7 +140,6 @@ impl<'scope> Preparation<'scope> {
                 }
             };
             equipment.items.push((item.what, item.variable, path));
-            equipment.seconds.push((item.what, start.elapsed().as_secs_f64()));
         }
         Ok(equipment)
     }

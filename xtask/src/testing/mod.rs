@@ -92,17 +92,13 @@ pub fn test(options: &Options) -> anyhow::Result<()> {
     let is_all = options.filters.is_empty() && options.packages.is_empty();
     thread::scope(|scope| {
         let preparation = is_all.then(|| Preparation::begin(scope, None)).transpose()?;
-        let begin = Instant::now();
         let programs = compile(options)?;
         let mut run = Run::default();
-        run.add_phase("compiling the tests", begin);
         let mut preparation = match preparation {
             Some(preparation) => preparation,
             None => Preparation::begin(scope, Some(&programs))?,
         };
-        let begin = Instant::now();
         run.equipment = preparation.libraries()?;
-        run.add_phase("waiting for the libraries", begin);
         let plan = plan(&programs, options);
         run.total = programs.iter().map(|program| program.tests.len()).sum();
         let workers =
@@ -110,10 +106,10 @@ pub fn test(options: &Options) -> anyhow::Result<()> {
         // The first worker builds, since cargo keeps but one processor busy while it links and optimizes whole programs.
         let mut prepared = Ok(Equipment::default());
         let prepare = || prepared = preparation.finish();
-        run.perform("running tests, building equipment", plan.first, workers, options, prepare)?;
+        run.perform(plan.first, workers, options, prepare)?;
         run.equip(prepared?);
-        run.perform("running tests with equipment", plan.equipped, workers, options, || ())?;
-        run.perform("running tests alone", plan.alone, 1, options, || ())?;
+        run.perform(plan.equipped, workers, options, || ())?;
+        run.perform(plan.alone, 1, options, || ())?;
         run.retry(options)?;
         if options.bless {
             println!("golden images renewed: look at `git diff --stat tests/golden` and at the pictures");

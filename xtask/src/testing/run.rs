@@ -1,4 +1,4 @@
-//! Processes of tests, their results, and where the time went.
+//! Processes of tests, and their results.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fs;
@@ -34,22 +34,13 @@ pub struct Run<'a> {
     failed: Vec<Job<'a>>,
     /// What failed beside others, but passed alone.
     flaky: Vec<String>,
-    /// Names and durations in seconds of phases.
-    phases: Vec<(String, f64)>,
     /// Messages about missing equipment, and the number of tests that printed each.
     left_out: BTreeMap<String, usize>,
 }
 
 impl<'a> Run<'a> {
-    /// Records how long something has taken that began then.
-    pub fn add_phase(&mut self, what: &str, begin: Instant) {
-        self.phases.push((what.to_owned(), begin.elapsed().as_secs_f64()));
-    }
-
     /// Adds what was prepared meanwhile.
     pub fn equip(&mut self, more: Equipment) {
-        self.phases
-            .extend(more.seconds.into_iter().map(|(what, seconds)| (format!("  of it {what}"), seconds)));
         self.equipment.items.extend(more.items);
     }
 
@@ -57,13 +48,11 @@ impl<'a> Run<'a> {
     /// If a process of several tests fails, each of them gets a process of its own, which shows the one that fails.
     pub fn perform(
         &mut self,
-        what: &str,
         jobs: Vec<Job<'a>>,
         workers: usize,
         options: &Options,
         before: impl FnOnce() + Send,
     ) -> anyhow::Result<()> {
-        let start = Instant::now();
         let queue = Mutex::new(VecDeque::from(jobs));
         let take = || queue.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
         let equipment = std::mem::take(&mut self.equipment);
@@ -97,7 +86,6 @@ impl<'a> Run<'a> {
             })
         })?;
         self.equipment = equipment;
-        self.add_phase(what, start);
         Ok(())
     }
 
@@ -146,17 +134,13 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Prints where the time since `start` went, and the result.
+    /// Prints the result of a run that began at `start`.
     ///
     /// # Errors
     /// If a test has failed, or none was found.
     pub fn conclude(self, start: Instant) -> anyhow::Result<()> {
         for (what, ..) in self.equipment.items.iter().filter(|(.., path)| path.is_none()) {
             println!("{what} cannot be had here: its tests were left out");
-        }
-        println!("\nwhere the time went                                      s");
-        for (what, seconds) in self.phases.iter().filter(|(_, seconds)| *seconds >= 0.05) {
-            println!("  {what:48} {seconds:8.1}");
         }
         self.left_out.iter().for_each(|(text, count)| println!("{count:6} x  {text}"));
         for name in &self.flaky {

@@ -1,11 +1,9 @@
-//! The licences that dependencies may have.
-
-use std::fmt::Write as _;
+//! The licences that what we distribute may have.
 
 use anyhow::Context as _;
 use spdx::{Expression, LicenseReq, Licensee, ParseMode};
 
-use crate::packages::{self, Package};
+use crate::packages::Package;
 
 /// What may be in our files, in the order of preference: the first needs a single text for all who chose it.
 const ACCEPTED: [&str; 13] = [
@@ -23,11 +21,6 @@ const ACCEPTED: [&str; 13] = [
     "CC0-1.0",
     "Unlicense",
 ];
-/// Programs that only the builder's machine runs.
-const TOOLS: [(&str, &str); 1] = [("cbindgen", "MPL-2.0")];
-/// The manifests of the workspaces.
-const MANIFESTS: [&str; 2] = ["Cargo.toml", "app/engines/bevy/Cargo.toml"];
-
 /// Returns the licences under which a package is used: the preferred ones that its expression demands together.
 pub fn chosen(package: &Package) -> anyhow::Result<Vec<LicenseReq>> {
     let Package { name, version, licence, .. } = package;
@@ -41,26 +34,6 @@ pub fn chosen(package: &Package) -> anyhow::Result<Vec<LicenseReq>> {
             "{name} {version} is {licence}, which is not in the list of xtask/helpers/publish/src/licences.rs"
         )
     })
-}
-
-/// Checks all dependencies of all workspaces. Returns the report, and true if all are accepted.
-pub fn check() -> anyhow::Result<(String, bool)> {
-    let (mut report, mut passed, mut count) = (String::new(), true, 0);
-    for manifest in MANIFESTS {
-        for package in packages::all(manifest)?.values() {
-            count += 1;
-            let is_tool = TOOLS.contains(&(&package.name, &package.licence));
-            if let Err(error) = chosen(package)
-                && !is_tool
-            {
-                passed = false;
-                // Writing to a string cannot fail.
-                let _ = writeln!(report, "{manifest}: {error:#}");
-            }
-        }
-    }
-    let _ = writeln!(report, "{count} licences looked at");
-    Ok((report, passed))
 }
 
 #[cfg(test)]

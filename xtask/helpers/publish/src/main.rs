@@ -1,5 +1,5 @@
-//! `licences` checks the licences of all dependencies. `notices PACKAGE TARGET [CARGO ARGUMENT...]` prints the notices of
-//! what a package contains. `site FOLDER [RELEASE]` completes a folder with the page and rustdoc to the site.
+//! `notices PACKAGE TARGET [CARGO ARGUMENT...]` prints the notices of what a package contains, and fails on a licence that
+//! is not accepted. `site FOLDER [RELEASE]` completes a folder with the page and rustdoc to the site.
 //!
 //! This is a separate program so that only people who publish or lint have to compile its dependencies.
 
@@ -22,12 +22,11 @@ fn main() -> ExitCode {
 /// Returns the text to print, and false if a check has failed.
 fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
     match arguments {
-        ["licences"] => licences::check(),
         ["notices", package, target, features @ ..] => Ok((notices::text(package, target, features)?, true)),
         ["site", folder, release @ ..] => {
             site::complete(Path::new(folder), release.first().map(Path::new))?;
             Ok((String::new(), true))
         }
-        _ => bail!("usage: licences, notices PACKAGE TARGET [CARGO ARGUMENT...], or site FOLDER [RELEASE]"),
+        _ => bail!("usage: notices PACKAGE TARGET [CARGO ARGUMENT...], or site FOLDER [RELEASE]"),
     }
 }
