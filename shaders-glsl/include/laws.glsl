@@ -44,9 +44,9 @@ vec3 tile_plane(ivec2 tile, int left, int right) {
     vec2 slope = vec2(corners.y - corners.x, corners.z - corners.x) / vec2(TILE.x - 1, TILE.y - 1);
     float error = abs(corners.w - corners.y - corners.z + corners.x);
     // The surface may be bent where one tile ends and the next one begins.
-    for (int s = left + 1; s <= right; ++s) {
-        vec2 lands = landing(s, tile.y).xy;
-        vec2 off = abs(corners.xz + slope.x * (lands - first) - float(s * TILE.x));
+    for (int next = left + 1; next <= right; ++next) {
+        vec2 lands = landing(next, tile.y).xy;
+        vec2 off = abs(corners.xz + slope.x * (lands - first) - float(next * TILE.x));
         bvec2 inside = lessThan(abs(lands - 0.5 * (first + last)), vec2(0.5 * (last - first)));
         error = max(error, max(inside.x ? off.x : 0.0, inside.y ? off.y : 0.0));
     }

@@ -93,7 +93,7 @@ fn tile_plane(tile: ptr<function, vec2<i32>>, left: ptr<function, i32>, right: p
     var local: vec4<bool>;
     var slope: vec2<f32>;
     var error: f32;
-    var s_1: i32;
+    var next: i32;
     var lands_1: vec2<f32>;
     var param_3: i32;
     var param_4: i32;
@@ -197,12 +197,12 @@ fn tile_plane(tile: ptr<function, vec2<i32>>, left: ptr<function, i32>, right: p
     let _e135 = corners[0u];
     error = abs((((_e127 - _e129) - _e132) + _e135));
     let _e138 = (*left);
-    s_1 = (_e138 + 1i);
+    next = (_e138 + 1i);
     loop {
-        let _e140 = s_1;
+        let _e140 = next;
         let _e141 = (*right);
         if (_e140 <= _e141) {
-            let _e143 = s_1;
+            let _e143 = next;
             param_3 = _e143;
             let _e145 = (*tile)[1u];
             param_4 = _e145;
@@ -212,7 +212,7 @@ fn tile_plane(tile: ptr<function, vec2<i32>>, left: ptr<function, i32>, right: p
             let _e151 = slope[0u];
             let _e152 = lands_1;
             let _e153 = first_1;
-            let _e158 = s_1;
+            let _e158 = next;
             off = abs(((_e148.xz + ((_e152 - vec2(_e153)) * _e151)) - vec2(f32((_e158 * 16i)))));
             let _e164 = lands_1;
             let _e165 = first_1;
@@ -243,8 +243,8 @@ fn tile_plane(tile: ptr<function, vec2<i32>>, left: ptr<function, i32>, right: p
             break;
         }
         continuing {
-            let _e191 = s_1;
-            s_1 = (_e191 + 1i);
+            let _e191 = next;
+            next = (_e191 + 1i);
         }
     }
     let _e195 = synthesis.source_size[0u];
@@ -306,7 +306,7 @@ fn main_1() {
     var high: i32;
     var left_1: i32;
     var right_1: i32;
-    var s_2: i32;
+    var s_1: i32;
     var moved: u32;
     var lowest: i32;
     var highest: i32;
@@ -348,12 +348,12 @@ fn main_1() {
     left_1 = _e105;
     right_1 = 0i;
     let _e106 = from_;
-    s_2 = _e106;
+    s_1 = _e106;
     loop {
-        let _e107 = s_2;
+        let _e107 = s_1;
         let _e108 = to;
         if (_e107 <= _e108) {
-            let _e110 = s_2;
+            let _e110 = s_1;
             let _e112 = tile_1[1u];
             let _e114 = textureLoad(tile_map_texture, vec2<i32>(_e110, _e112), 0i);
             moved = _e114.x;
@@ -373,9 +373,9 @@ fn main_1() {
                 let _e134 = highest;
                 high = max(_e133, _e134);
                 let _e136 = left_1;
-                let _e137 = s_2;
+                let _e137 = s_1;
                 left_1 = min(_e136, _e137);
-                let _e139 = s_2;
+                let _e139 = s_1;
                 right_1 = _e139;
             }
             let _e140 = least;
@@ -387,8 +387,8 @@ fn main_1() {
             break;
         }
         continuing {
-            let _e144 = s_2;
-            s_2 = (_e144 + 1i);
+            let _e144 = s_1;
+            s_1 = (_e144 + 1i);
         }
     }
     let _e146 = high;
