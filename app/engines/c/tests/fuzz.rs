@@ -6,8 +6,8 @@ mod common;
 use std::ptr::{null, null_mut};
 
 use common::{
-    Random, create, framebuffer, gl_info, good_eyes, images, is_documented, matrices_of, texture, views_of,
-    views_of_matrices, zeroed,
+    Random, create, framebuffer, gl_info, good_eyes, images, is_documented, matrices_of, motion_of, texture,
+    views_of, views_of_matrices, zeroed,
 };
 use glow::HasContext as _;
 use yoro_c::*;
@@ -49,22 +49,6 @@ fn levels_of(
     // SAFETY: complete structures.
     match unsafe { yoro_levels_from_eyes(eyes, foveation, wide, inset, compositions.as_mut_ptr()) } {
         YORO_OK => Ok((views, compositions)),
-        code => Err(code),
-    }
-}
-
-fn motion_of(
-    eyes: &YoroEyes,
-    previous: &YoroEyes,
-    vectors: YoroVectors,
-) -> Result<[YoroMotionWarp; 2], YoroResult> {
-    let mut motion: YoroMotion = zeroed(|m: &mut YoroMotion| &mut m.struct_size);
-    (motion.eyes, motion.previous, motion.vectors) = (eyes, previous, vectors);
-    let mut warps = [YoroMotionWarp::default(); 2];
-    let [other, own] = &mut warps;
-    // SAFETY: complete structures.
-    match unsafe { yoro_motion_warp(&motion, other, own) } {
-        YORO_OK => Ok(warps),
         code => Err(code),
     }
 }

@@ -4,7 +4,7 @@ mod common;
 
 use std::ptr::{null, null_mut};
 
-use common::{create, gl_info, good_eyes, images, views_of, zeroed};
+use common::{create, gl_info, good_eyes, images, motion_of as warps, views_of, zeroed};
 use yoro::eyes::{DepthConvention, DepthRange, EyePair, Frustum, GuardBand, MotionWarp, Ndc, Pose};
 use yoro::eyes::{Eye, VectorSpace, VectorsOf};
 use yoro_c::*;
@@ -27,23 +27,6 @@ fn core(eyes: &YoroEyes) -> EyePair {
     };
     let size = [eyes.width, eyes.height];
     EyePair { poses: eyes.poses.map(pose), frusta: eyes.fovs.map(fov), depth, size, dominant: Eye::Right }
-}
-
-/// Returns the warps to the other eye and to the rendered one.
-fn warps(
-    eyes: &YoroEyes,
-    previous: &YoroEyes,
-    vectors: YoroVectors,
-) -> Result<[YoroMotionWarp; 2], YoroResult> {
-    let mut motion: YoroMotion = zeroed(|m: &mut YoroMotion| &mut m.struct_size);
-    (motion.eyes, motion.previous, motion.vectors) = (eyes, previous, vectors);
-    let mut warps = [YoroMotionWarp::default(); 2];
-    let [other, own] = &mut warps;
-    // SAFETY: complete structures, and what is refused.
-    match unsafe { yoro_motion_warp(&motion, other, own) } {
-        YORO_OK => Ok(warps),
-        code => Err(code),
-    }
 }
 
 fn the_cores(eyes: &YoroEyes, previous: &YoroEyes, space: VectorSpace) -> [MotionWarp; 2] {

@@ -22,8 +22,7 @@ impl From<&Texture> for Image {
 }
 
 impl Destination {
-    /// Returns the rectangle as an image, in a format that the framebuffer is known to have. It has one sample, as its
-    /// texture does: those of a tile that resolves into it are the pass's own, and are not declared.
+    /// Returns the rectangle as an image of one sample, whatever a tile has, in a format that the framebuffer must have.
     pub fn image(&self, format: Format) -> Image {
         Image { format, size: self.size, samples: 1 }
     }

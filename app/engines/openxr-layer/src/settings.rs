@@ -78,9 +78,7 @@ fn guard_band<'de, D: Deserializer<'de>>(value: D) -> Result<GuardBand, D::Error
         Value::String(text) => text,
         other => other.to_string(),
     };
-    // The view is offered before anything is rendered, so the guard band cannot depend on the scene.
-    let band = GuardBand::from_str(&text).ok().filter(|_| !text.starts_with("auto"));
-    band.ok_or_else(|| {
+    GuardBand::from_str(&text).map_err(|_| {
         let remedy = "give none, pixels such as 40px, or metres such as 1.0";
         D::Error::custom(format!("{text:?} is no guard band: {remedy}"))
     })

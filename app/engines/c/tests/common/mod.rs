@@ -103,6 +103,23 @@ pub fn views_of(eyes: &YoroEyes) -> Result<YoroViews, YoroResult> {
     }
 }
 
+/// Returns the warps of motion to the other eye and to the rendered one.
+pub fn motion_of(
+    eyes: &YoroEyes,
+    previous: &YoroEyes,
+    vectors: YoroVectors,
+) -> Result<[YoroMotionWarp; 2], YoroResult> {
+    let mut motion: YoroMotion = zeroed(|m: &mut YoroMotion| &mut m.struct_size);
+    (motion.eyes, motion.previous, motion.vectors) = (eyes, previous, vectors);
+    let mut warps = [YoroMotionWarp::default(); 2];
+    let [other, own] = &mut warps;
+    // SAFETY: complete structures.
+    match unsafe { yoro_motion_warp(&motion, other, own) } {
+        YORO_OK => Ok(warps),
+        code => Err(code),
+    }
+}
+
 pub fn matrices_of(views: &YoroViews, eyes: &YoroEyes) -> YoroMatrices {
     let mut matrices: YoroMatrices = zeroed(|m: &mut YoroMatrices| &mut m.struct_size);
     (matrices.rendered, matrices.width, matrices.height) = (eyes.rendered, eyes.width, eyes.height);
