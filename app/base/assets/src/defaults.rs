@@ -1,13 +1,11 @@
-//! Viewpoints and lights for models whose files have none.
+//! Viewpoints and skies for models whose files have none.
 
-use std::collections::HashMap;
 use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
-use super::model::{Bounds, Model, PointLight, Sky, Viewpoint};
+use super::model::{Bounds, Model, Sky, Viewpoint};
 use super::rays::Rays;
-use super::textures::to_linear;
 
 /// Number of viewpoints generated for a file without `camera.json`.
 const COUNT: usize = 8;
@@ -22,9 +20,6 @@ const ROOM: f32 = 3.0;
 /// rays around a place that must hit something; with fewer hits it is the top of an object, not a place to walk.
 const LEAST_SEEN: f32 = 0.3;
 const LEAST_FLOOR: f32 = 0.5;
-
-/// Maximum number of generated point lights.
-const MAX_LIGHTS: usize = 16;
 
 /// Returns viewpoints and a short description of how they were found. Models larger than a few metres are walked
 /// through, where there is a floor with headroom and something to see around it. Smaller models are circled, as are
@@ -214,11 +209,9 @@ fn place(eye: Vec3, rays: &Rays, reach: f32) -> Option<Place> {
     (distances[0] >= 0.5).then_some(Place { eye, score })
 }
 
-/// Returns sun, sky and point lights for a model without any. Glowing surfaces become point lights. If the viewpoints
-/// see (almost) no sky and no surface glows, lamps under the ceiling replace the sky.
-pub(super) fn light(model: &Model, rays: &Rays, viewpoints: &[Viewpoint]) -> (Sky, Vec<PointLight>) {
+/// Returns sun and sky for a model without them: where the viewpoints see (almost) no sky, the even light of a room.
+pub(super) fn sky(model: &Model, rays: &Rays, viewpoints: &[Viewpoint]) -> Sky {
     let bounds = model.bounds();
-    let lights = glowing(model, &bounds);
     let reach = (bounds.max - bounds.min).length() * 2.0 + 1.0;
     let upward: Vec<Vec3> = [25.0, 55.0]
         .into_iter()
@@ -231,89 +224,13 @@ pub(super) fn light(model: &Model, rays: &Rays, viewpoints: &[Viewpoint]) -> (Sk
         .filter(|&(p, d)| rays.cast(p, d, reach).is_none());
     let sky_share = open.count() as f32 / (viewpoints.len() * upward.len()).max(1) as f32;
     if sky_share > 0.2 {
-        return (Sky::default(), lights);
+        return Sky::default();
     }
-    let sky = Sky {
+    Sky {
         sun_color: if sky_share > 0.0 { Sky::default().sun_color } else { Vec3::ZERO },
         zenith: Vec3::new(0.40, 0.40, 0.41),
         horizon: Vec3::new(0.34, 0.33, 0.31),
         ground: Vec3::new(0.25, 0.22, 0.19),
         ..Sky::default()
-    };
-    let lights = if lights.is_empty() { lamps(rays, viewpoints, reach) } else { lights };
-    (sky, lights)
-}
-
-/// Returns lamps under the ceiling above the viewpoints, at least 3 m apart.
-fn lamps(rays: &Rays, viewpoints: &[Viewpoint], reach: f32) -> Vec<PointLight> {
-    let mut lights: Vec<PointLight> = Vec::new();
-    for v in viewpoints {
-        let distance = |d: Vec3| rays.cast(v.position, d, reach).map(|h| h.distance);
-        let above = distance(Vec3::Y).map_or(2.0, |d| (d * 0.8).min(4.0));
-        let height = above + distance(Vec3::NEG_Y).unwrap_or(EYE_HEIGHT);
-        let position = v.position + Vec3::Y * above;
-        if lights.len() < MAX_LIGHTS && lights.iter().all(|l| l.position.distance(position) > 3.0) {
-            // A third of the sun's light reaches the floor below.
-            let color = Vec3::new(1.0, 0.94, 0.84) * height * height;
-            lights.push(PointLight { position, color, range: (height * 4.0).max(6.0) });
-        }
     }
-    lights
-}
-
-/// Returns point lights for the surfaces that emit light, gathered by neighbourhood, brightest first.
-fn glowing(model: &Model, bounds: &Bounds) -> Vec<PointLight> {
-    #[derive(Default)]
-    struct Lamp {
-        position: Vec3,
-        normal: Vec3,
-        power: Vec3,
-        weight: f32,
-    }
-    let cell = ((bounds.max - bounds.min).max_element() / 12.0).clamp(0.5, 4.0);
-    let mut lamps: HashMap<[i32; 3], Lamp> = HashMap::new();
-    for part in &model.parts {
-        let material = &model.materials[part.material];
-        let picture = material.emissive_map.map_or(Vec3::ONE, |i| mean_linear(&model.textures[i].rgba));
-        let radiance = Vec3::from(material.emissive.to_array().map(to_linear)) * picture;
-        if radiance.max_element() < 0.05 {
-            continue;
-        }
-        for triangle in model.indices[part.indices.clone()].chunks_exact(3) {
-            let [a, b, c] = [0, 1, 2].map(|k| model.vertices[triangle[k] as usize].position);
-            let normal = (b - a).cross(c - a) * 0.5;
-            let center = (a + b + c) / 3.0;
-            let lamp = lamps.entry((center / cell).floor().as_ivec3().to_array()).or_default();
-            let area = normal.length();
-            lamp.position += center * area;
-            lamp.normal += normal;
-            lamp.power += radiance * area;
-            lamp.weight += area;
-        }
-    }
-    let mut lights: Vec<PointLight> = lamps
-        .into_values()
-        // Smaller than a hand, so a diode rather than a lamp.
-        .filter(|l| l.weight > 0.01)
-        .map(|l| {
-            // Radiance L and area A give the intensity L A straight ahead, limited here to a bright lamp's.
-            let color = l.power * (20.0 / l.power.max_element()).min(1.0);
-            let position = l.position / l.weight + l.normal.normalize_or_zero() * 0.15;
-            PointLight { position, color, range: (color.max_element() / 0.01).sqrt().clamp(2.0, 30.0) }
-        })
-        .collect();
-    let key = |l: &PointLight| (-l.color.max_element(), l.position.x, l.position.y, l.position.z);
-    lights.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
-    lights.truncate(MAX_LIGHTS);
-    lights
-}
-
-fn mean_linear(rgba: &[u8]) -> Vec3 {
-    // Every 37th pixel is enough.
-    let picked = || rgba.chunks_exact(4).step_by(37);
-    let sum: Vec3 = picked()
-        .map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32))
-        .map(|p| Vec3::from((p / 255.0).to_array().map(to_linear)))
-        .sum();
-    sum / picked().count().max(1) as f32
 }

@@ -136,8 +136,8 @@ fn metres(length: f64) -> String {
 /// Viewpoints come from `NAME.camera.json` or `camera.json` beside the file (an array of [`Viewpoint`]), light and
 /// style from `NAME.scene.json` or `scene.json` ([`SceneNotes`]). Without these files, a glTF file's own cameras and
 /// lights are used. Anything still missing is generated: at least 8 viewpoints around the model or through it at eye
-/// height, point lights for glowing surfaces, and a sky, or lamps where no sky is visible. A model farther from the
-/// origin than f32 can tell its details is moved there, with a warning that says by how much.
+/// height, and a sky, or even light where no sky is visible. A model farther from the origin than f32 can tell its
+/// details is moved there, with a warning that says by how much.
 ///
 /// # Errors
 /// [`SceneError`], one sentence for the user.
@@ -202,17 +202,14 @@ pub fn load_animated(path: &Path, animation: Option<&str>) -> Result<Scene, Scen
         cameras = viewpoints;
     }
     let has_made_up_viewpoints = cameras.is_empty();
-    if cameras.is_empty() || sky.is_none() || lights.is_none() {
+    if cameras.is_empty() || sky.is_none() {
         let rays = Rays::new(&model);
         if cameras.is_empty() {
             let (made, how) = defaults::viewpoints(&model, &rays);
             log::info!("{}: {} viewpoints are made up: {how}", path.display(), made.len());
             cameras = made;
         }
-        let (default_sky, default_lights) = defaults::light(&model, &rays, &cameras);
-        // A file with lamps but no sky is lit by its lamps alone.
-        sky = sky.or(Some(default_sky));
-        lights = lights.or(Some(default_lights));
+        sky = sky.or_else(|| Some(defaults::sky(&model, &rays, &cameras)));
     }
     Ok(Scene {
         name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
