@@ -19,8 +19,8 @@ struct Run {
 
 /// What does not fit into an hour at 1024 pixels an eye has fewer.
 const RUNS: [Run; 11] = [
-    Run { arguments: "scenes --rounds 1", minutes: 25 },
-    Run { arguments: "flicker", minutes: 15 },
+    Run { arguments: "scenes --rounds 1", minutes: 20 },
+    Run { arguments: "flicker", minutes: 12 },
     Run { arguments: "half-rate --size 512x512", minutes: 10 },
     Run { arguments: "hard-cases", minutes: 2 },
     Run { arguments: "reprojection --size 512x512 --viewpoints 2", minutes: 5 },
