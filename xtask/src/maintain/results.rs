@@ -29,7 +29,7 @@ const RUNS: [Run; 11] = [
     Run { arguments: "ipd --size 512x512 --viewpoints 1", minutes: 2 },
     Run { arguments: "distance --size 512x512", minutes: 2 },
     Run { arguments: "lights --size 512x512 --viewpoints 1 --rounds 2", minutes: 2 },
-    Run { arguments: "complexity --size 512x512 --rounds 2", minutes: 5 },
+    Run { arguments: "complexity --size 512x512 --rounds 2", minutes: 15 },
 ];
 /// The name of the estimate of phones, whose text is kept, and its arguments.
 const ESTIMATE: (&str, [&str; 6]) = ("estimate", ["--width", "512", "--height", "512", "--viewpoints", "1"]);

@@ -56,8 +56,11 @@ pub(super) fn psnr_ssim_flip(mean: impl Fn(&str) -> Option<f64>) -> Option<Strin
 /// What the figures of [`cost_of`] are.
 pub(super) const QUARTILES: &str = "Medians of all frames, and their quartiles.";
 
-/// Returns a contender's frame time over that of two full renders.
+/// Returns a contender's frame time over that of two full renders, which have their own.
 pub(super) fn cost_of(setting: &SettingData, name: &str) -> Option<String> {
+    if name == CONVENTIONAL {
+        return Some(format!("{} ms", milliseconds(setting.conventional()?.median(metric::FRAME_MS)?)));
+    }
     let Spread { median, quartiles: [low, high] } = setting.cost(name)?;
     Some(format!("{median:.2} ({low:.2}–{high:.2})"))
 }

@@ -127,13 +127,12 @@ impl plotters::coord::ranged1d::ValueFormatter<f64> for Scaled {
 }
 
 /// Draws a plot: axes, then a layer for each entry of the legend, so that the page can hide one.
-pub(super) fn draw(plot: &Plot, with_legend: bool) -> DrawingResult<Drawing> {
+pub(super) fn draw(plot: &Plot) -> DrawingResult<Drawing> {
     let legend = plot.legend();
     let mut points = Vec::new();
     let mut body = layer(plot, |root, chart| {
         root.fill(&rgb(palette::BACKGROUND.0))?;
-        draw_axes(plot, chart)?;
-        if with_legend { draw_legend(&legend, chart) } else { Ok(()) }
+        draw_axes(plot, chart)
     })?;
     // The first entry comes last, on top of others with equal figures.
     for (i, entry) in legend.iter().enumerate().rev() {
@@ -161,6 +160,30 @@ pub(super) fn draw(plot: &Plot, with_legend: bool) -> DrawingResult<Drawing> {
     );
     let swatches = legend.iter().map(|entry| swatch(plot, entry)).collect::<DrawingResult<_>>()?;
     Ok(Drawing { svg, swatches, points })
+}
+
+/// Draws a plot with its legend below, in two columns.
+pub(super) fn draw_document(plot: &Plot) -> DrawingResult<String> {
+    let (drawing, entries) = (draw(plot)?, plot.legend());
+    let (above, below) = (height(plot), entries.len().div_ceil(2) as u32 * ROW_HEIGHT as u32);
+    let mut legend = String::new();
+    {
+        let root = SVGBackend::with_string(&mut legend, (WIDTH, below)).into_drawing_area();
+        root.fill(&rgb(palette::BACKGROUND.0))?;
+        for (i, entry) in entries.iter().enumerate() {
+            let (column, row) = ((i % 2) as i32, (i / 2) as i32);
+            let (x, y) = (EM + column * WIDTH as i32 / 2, row * ROW_HEIGHT + ROW_HEIGHT / 2);
+            draw_mark(&root, (x, y), &palette::of(&entry.method), entry.papers)?;
+            root.draw(&Text::new(entry.label.clone(), (x + EM, y - EM / 2), text()))?;
+        }
+        root.present()?;
+    }
+    let legend = legend.replacen("<svg ", &format!("<svg y=\"{above}\" "), 1);
+    let (plot, height) = (drawing.svg, above + below);
+    Ok(format!(
+        "<svg viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
+         xmlns=\"http://www.w3.org/2000/svg\">\n{plot}{legend}</svg>\n"
+    ))
 }
 
 fn has_intervals(plot: &Plot) -> bool {
@@ -247,24 +270,6 @@ fn draw_axes(plot: &Plot, chart: &mut Chart) -> DrawingResult<()> {
     let along = |value: &f64| PathElement::new(vec![(x.start, *value), (x.end, *value)], line);
     chart.draw_series(plot.y.lines_at.iter().map(along))?;
     Ok(())
-}
-
-/// Draws the legend of a document's picture inside the plot.
-fn draw_legend(legend: &[&Entry], chart: &mut Chart) -> DrawingResult<()> {
-    for entry in legend {
-        let (look, papers) = (palette::of(&entry.method), entry.papers);
-        chart
-            .draw_series(std::iter::empty::<PathElement<(f64, f64)>>())?
-            .label(&entry.label)
-            .legend(move |(x, y)| Polygon::new(outline(&look, (x + EM, y)), style(&look, papers)));
-    }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .legend_area_size(2 * EM)
-        .background_style(rgb(palette::BACKGROUND.0).filled())
-        .label_font(text())
-        .draw()
 }
 
 /// Draws the points of a series, and returns those that are finite with their places in SVG units.

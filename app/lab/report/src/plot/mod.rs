@@ -200,19 +200,22 @@ impl Plot {
     /// # Errors
     /// [`PlotError`] if plotters refuses.
     pub fn to_svg(&self) -> Result<String, PlotError> {
-        let drawing = self.draw(true)?;
+        let svg = draw::draw_document(self).map_err(|error| self.error(&error))?;
         let style = format!("<style>@media (prefers-color-scheme: dark) {{{}}}</style>", css_rules());
-        Ok(drawing.svg.replacen('>', &format!(">{style}"), 1))
+        Ok(svg.replacen('>', &format!(">{style}"), 1))
     }
 
-    fn draw(&self, with_legend: bool) -> Result<draw::Drawing, PlotError> {
-        draw::draw(self, with_legend)
-            .map_err(|error| PlotError { title: self.title.clone(), what: error.to_string() })
+    fn draw(&self) -> Result<draw::Drawing, PlotError> {
+        draw::draw(self).map_err(|error| self.error(&error))
+    }
+
+    fn error(&self, what: &impl ToString) -> PlotError {
+        PlotError { title: self.title.clone(), what: what.to_string() }
     }
 
     /// Returns what the page's template and script need: drawing, legend, and the points with their places.
     pub(crate) fn to_page(&self) -> Result<Value, PlotError> {
-        let drawing = self.draw(false)?;
+        let drawing = self.draw()?;
         let legend = self.legend();
         let entries = legend.iter().zip(&drawing.swatches);
         let entries = entries.map(|(entry, swatch)| json!({ "label": entry.label, "swatch": swatch }));

@@ -13,7 +13,7 @@ fn curves_have_axes_and_correct_points() {
     plot.curve(Entry::ours("conventional"), [(1.0, 20.0), (2.0, 40.0), (3.0, 40.0)]);
     let labels: Vec<&str> = plot.legend().iter().map(|entry| entry.label.as_str()).collect();
     assert_eq!(labels, ["conventional", "the paper's"], "ours first");
-    let drawing = plot.draw(false).unwrap();
+    let drawing = plot.draw().unwrap();
     assert!(drawing.svg.contains("triangles, millions") && drawing.svg.contains("frame time, ms"));
     assert!(!drawing.svg.contains("NaN") && !drawing.svg.contains(">\nconventional\n</text>"));
     let document = plot.to_svg().unwrap();
@@ -35,7 +35,7 @@ fn rows_have_names_marks_and_lanes() {
         plot.mark(row, Entry::ours("hybrid"), f64::INFINITY);
     }
     assert_eq!(plot.legend().len(), 1, "what is not finite is not drawn");
-    let drawing = plot.draw(false).unwrap();
+    let drawing = plot.draw().unwrap();
     assert!(drawing.svg.contains("a &lt;b&gt;") && !drawing.svg.contains("inf"));
     let row = |drawing: &draw::Drawing, i: usize| {
         serde_json::to_value(&drawing.points[i]).unwrap()["at"][1].as_i64().unwrap()
@@ -43,7 +43,7 @@ fn rows_have_names_marks_and_lanes() {
     assert!(row(&drawing, 0) < row(&drawing, 1), "from top to bottom");
     let interval = Some(Interval { low: 0.4, high: 0.7 });
     plot.mark_interval("c", Entry::ours("yoro"), 0.5, interval);
-    let drawing = plot.draw(false).unwrap();
+    let drawing = plot.draw().unwrap();
     let of_c: Vec<i64> = (0..3).map(|i| row(&drawing, i)).collect();
     assert!(of_c[0] - of_c[2] >= 20, "each method has its lane: {of_c:?}");
     let data = plot.to_page().unwrap()["data"].as_str().unwrap().to_owned();
@@ -53,9 +53,9 @@ fn rows_have_names_marks_and_lanes() {
 #[test]
 fn logarithms_have_few_ticks() {
     let mut plot = Plot::points("A test", Axis::new("ms").logarithmic(), Axis::new("y"));
-    assert!(plot.is_empty() && plot.draw(false).is_ok(), "without values");
+    assert!(plot.is_empty() && plot.draw().is_ok(), "without values");
     plot.curve(Entry::ours("yoro"), [(0.35, 5.0), (37142.0, 5.0)]);
-    let svg = plot.draw(false).unwrap().svg;
+    let svg = plot.draw().unwrap().svg;
     for tick in ["1", "10", "100", "1000", "10000"] {
         assert!(svg.contains(&format!(">\n{tick}\n</text>")), "{tick}: {svg}");
     }

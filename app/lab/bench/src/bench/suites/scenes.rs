@@ -5,8 +5,7 @@ use super::super::record::{PassClock, metric};
 use super::super::results::{CONVENTIONAL, SettingData, SuiteData};
 use super::super::tables::{
     MetricColumn, PSNR_SSIM_FLIP, PapersColumn, QUALITY_PLOTS, QUARTILES, QualityPlot, cell, cost_of,
-    mark_scenes, means_table, metric_table, milliseconds, paper_scene, psnr_ssim_flip, scene_table, table_of,
-    time_details,
+    mark_scenes, means_table, metric_table, paper_scene, psnr_ssim_flip, scene_table, table_of, time_details,
 };
 use super::{ALL, FrameSuite};
 use yoro_report::paper::{PAPER, SYSTEMS};
@@ -53,10 +52,6 @@ fn frame_time(suite: &SuiteData) -> Section {
         .caption("Medians on this machine.");
     let median = |setting: &SettingData, name: &str| setting.find(name)?.median(metric::FRAME_MS);
     section.plot(mark_scenes(plot, suite, &contenders, median, |_| Vec::new()));
-    let text = |setting: &SettingData, name: &str| match name {
-        CONVENTIONAL => Some(format!("{} ms", milliseconds(median(setting, name)?))),
-        name => cost_of(setting, name),
-    };
     let papers = PapersColumn {
         title: "the paper's YORO",
         of_scene: |setting| {
@@ -66,7 +61,7 @@ fn frame_time(suite: &SuiteData) -> Section {
         mean: Some(format!("{:.2}", PAPER.average.frame_time_ratio())),
     };
     let mean = |name: &str| fixed(suite.mean_cost(name), 2);
-    let mut table = scene_table(suite, title, &contenders, text, mean, Some(papers));
+    let mut table = scene_table(suite, title, &contenders, cost_of, mean, Some(papers));
     table.note = QUARTILES.into();
     section.table(table);
     section.table(time_details(suite, |setting, name| {
