@@ -59,7 +59,7 @@ impl Phone {
         }
         let optics = Optics::new(&params, [width, height]);
         Ok(Phone {
-            lens: LensPass::new(&page.gl, &optics, true, false).map_err(sentence)?,
+            lens: LensPass::new(&page.gl, &optics, true).map_err(sentence)?,
             frame: StereoFrame::new(&page.gl, [1, 1]).map_err(sentence)?,
             optics,
             head: before.map(|phone| phone.head).unwrap_or_default(),
