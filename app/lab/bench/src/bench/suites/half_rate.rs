@@ -282,6 +282,8 @@ impl Contenders {
         self.frame.resize(size)?;
         self.resize_vectors(size.map(|n| n.div_ceil(DIVISOR)))?;
 
+        // Vectors are those since the previous render.
+        scene.set_time(previous.seconds)?;
         scene.set_time(now.seconds)?;
         let to = self.targets(&previous.pair);
         let mut submit = |this: &mut Contenders, name: &str| {
