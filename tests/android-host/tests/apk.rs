@@ -211,12 +211,12 @@ fn a_long_press_opens_the_menu_and_another_recenters() {
 #[test]
 fn taps_switch_methods_and_keys_the_ipd() {
     let steps = r#"{ seconds = 1.2 }, { tap = {} }, { seconds = 1.2 }, { key = "headset" }, { seconds = 1.2 },
-        { key = "volume-up" }, { key = "volume-down" }, { property = { name = "debug.yoro.method", value = "yoro" } },
+        { key = "volume-up" }, { key = "volume-down" }, { property = { name = "debug.yoro.method", value = "conventional" } },
         { seconds = 2.2 }"#;
     let Some(run) = show("taps", &phone(&[("method", "yoro")], ""), steps) else { return };
     let mut methods: Vec<_> = lines(&run).into_iter().map(|line| line.method).collect();
     methods.dedup();
-    assert_eq!(methods, ["yoro", "conventional", "mono", "yoro"]);
+    assert_eq!(methods, ["yoro", "conventional", "mono", "conventional"]);
     assert_eq!(run.summary.log_of("YORO").filter(|text| text.starts_with("ipd: ")).count(), 2);
     assert_eq!(run.summary.input.sent, run.summary.input.finished);
     assert_eq!(run.summary.input.sent, run.summary.input.handled);
