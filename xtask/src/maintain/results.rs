@@ -21,7 +21,7 @@ struct Run {
 const RUNS: [Run; 11] = [
     Run { arguments: "scenes --rounds 1", minutes: 20 },
     Run { arguments: "flicker", minutes: 12 },
-    Run { arguments: "half-rate --size 512x512", minutes: 10 },
+    Run { arguments: "half-rate --size 384x384 --viewpoints 1", minutes: 2 },
     Run { arguments: "hard-cases", minutes: 2 },
     Run { arguments: "reprojection --size 512x512 --viewpoints 2", minutes: 5 },
     Run { arguments: "patchers --size 512x512 --viewpoints 1 --rounds 1", minutes: 2 },
