@@ -8,8 +8,10 @@ use yoro_bench::bench::{BenchReport, Results};
 use yoro_report::{Block, Report, Text, Tone};
 
 const DOCUMENTS: [&str; 2] = ["docs/results.md", "docs/performance.md"];
-/// The lines around a table: `<!-- table FILE: TITLE -->` with a file in docs/results, and the second one.
-const TABLE: [&str; 2] = ["<!-- table ", "<!-- end -->"];
+/// The line before a table: `<!-- table FILE: TITLE -->` with a file in docs/results.
+const TABLE: &str = "<!-- table ";
+/// The line after a table.
+const END: &str = "<!-- end -->";
 /// The line before a picture of a plot: `<!-- plot FILE: TITLE -->`.
 const PLOT: &str = "<!-- plot ";
 
@@ -71,9 +73,9 @@ fn the_documents_have_the_tables_and_plots_of_the_data() {
         let text = fs::read_to_string(&path).unwrap();
         let mut expected = String::new();
         let mut rest = text.as_str();
-        while let Some(at) = rest.find(TABLE[0]).into_iter().chain(rest.find(PLOT)).min() {
+        while let Some(at) = rest.find(TABLE).into_iter().chain(rest.find(PLOT)).min() {
             let line = rest[at..].find('\n').unwrap() + at + 1;
-            let (is_table, mark) = match rest[at..line].strip_prefix(TABLE[0]) {
+            let (is_table, mark) = match rest[at..line].strip_prefix(TABLE) {
                 Some(mark) => (true, mark),
                 None => (false, &rest[at + PLOT.len()..line]),
             };
@@ -83,7 +85,7 @@ fn the_documents_have_the_tables_and_plots_of_the_data() {
             rest = &rest[line..];
             if is_table {
                 expected += &format!("{}\n", table(file, title));
-                rest = &rest[rest.find(TABLE[1]).unwrap_or_else(|| panic!("{title} has no end"))..];
+                rest = &rest[rest.find(END).unwrap_or_else(|| panic!("{title} has no end"))..];
             } else {
                 let (_, picture) = rest.split_once("](").unwrap();
                 let picture = picture.split(')').next().unwrap();

@@ -144,6 +144,16 @@ fn is_coded((ssim, mean): (f64, f64)) -> bool {
     ssim > 0.99 && mean < 1.5
 }
 
+/// Waits until a stream, which begins with coarse pictures, has fine ones, but not for long.
+fn wait_until_fine(mut is_fine: impl FnMut() -> bool) {
+    for _ in 0..100 {
+        if is_fine() {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    }
+}
+
 /// Checks that the page shows the same as the desktop, at the picture's pose and one step beside it.
 fn check(page: &mut Page, desktop: &mut Desktop) -> [EyePair; 2] {
     let number =
@@ -151,14 +161,10 @@ fn check(page: &mut Page, desktop: &mut Desktop) -> [EyePair; 2] {
     let size = [number(page, "width") / 2, number(page, "height")];
     let pairs = desktop.pairs(size);
     let [still, moved] = desktop.seen(&pairs);
-    // A stream begins with coarse pictures.
-    for _ in 0..100 {
+    wait_until_fine(|| {
         let here = page.eyes(size);
-        if [0, 1].iter().all(|&eye| is_coded(difference(&here[eye], &still[eye]))) {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(100));
-    }
+        [0, 1].iter().all(|&eye| is_coded(difference(&here[eye], &still[eye])))
+    });
     for (name, step, desktop) in [("still", 0.0, still), ("moved", STEP, moved)] {
         // Read immediately, before a picture of the new pose can arrive, then walk back.
         page.evaluate(&format!("yoro.page.walk({step}, 0, 0); 0"));
@@ -311,18 +317,13 @@ fn a_video_is_streamed_whole() {
         // The additional columns are on the left.
         frames.push(inner(&imageops::crop_imm(&color, color.width() - 192, 0, 192, 128).to_image()));
     }
-    // A stream begins with coarse pictures.
     let mut best = 0.0f64;
-    for _ in 0..100 {
+    wait_until_fine(|| {
         let [_, right] = page.eyes([192, 128]);
         let of = |frame: &RgbImage| psnr(&inner(&right), frame, Channels::Rgb).unwrap().0;
         best = frames.iter().map(of).fold(best, f64::max);
-        eprintln!("{best:.2} dB");
-        if best > 40.0 {
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(100));
-    }
+        best > 40.0
+    });
     assert!(best > 40.0, "{best} dB");
     page.browser.expect_silence();
 }

@@ -63,7 +63,7 @@ impl Generated {
 }
 
 /// Writes the documents' tables of what was measured.
-pub fn documents() -> anyhow::Result<()> {
+pub fn renew_results() -> anyhow::Result<()> {
     RESULTS.renew()
 }
 

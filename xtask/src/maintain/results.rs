@@ -17,7 +17,7 @@ struct Run {
     minutes: u32,
 }
 
-/// What does not fit into an hour at 1024 pixels an eye has fewer.
+/// Suites that would take too long at 1024 x 1024 pixels an eye have smaller images.
 const RUNS: [Run; 11] = [
     Run { arguments: "scenes --rounds 1", minutes: 20 },
     Run { arguments: "flicker", minutes: 12 },
@@ -31,8 +31,9 @@ const RUNS: [Run; 11] = [
     Run { arguments: "lights --size 512x512 --viewpoints 1 --rounds 2", minutes: 2 },
     Run { arguments: "complexity --size 512x512 --rounds 2", minutes: 15 },
 ];
-/// The name of the estimate of phones, whose text is kept, and its arguments.
-const ESTIMATE: (&str, [&str; 6]) = ("estimate", ["--width", "512", "--height", "512", "--viewpoints", "1"]);
+/// The name of the estimate of phones, whose report is kept as text.
+const ESTIMATE: &str = "estimate";
+const ESTIMATE_ARGUMENTS: [&str; 6] = ["--width", "512", "--height", "512", "--viewpoints", "1"];
 const ESTIMATE_MINUTES: u32 = 8;
 
 impl Run {
@@ -47,13 +48,13 @@ impl Run {
 /// # Errors
 /// If a suite is unknown, or a run fails. The data that were there before are then unchanged.
 pub fn measure(suites: &[String]) -> anyhow::Result<String> {
-    let known = || RUNS.iter().map(Run::suite).chain([ESTIMATE.0]);
+    let known = || RUNS.iter().map(Run::suite).chain([ESTIMATE]);
     if let Some(unknown) = suites.iter().find(|suite| known().all(|name| name != *suite)) {
         bail!("no document has figures of {unknown}: choose of {}", known().collect::<Vec<_>>().join(", "));
     }
     let is_wanted = |name: &str| suites.is_empty() || suites.iter().any(|suite| suite == name);
     let runs = || RUNS.iter().filter(|run| is_wanted(run.suite()));
-    let minutes = runs().map(|run| run.minutes).chain(is_wanted(ESTIMATE.0).then_some(ESTIMATE_MINUTES));
+    let minutes = runs().map(|run| run.minutes).chain(is_wanted(ESTIMATE).then_some(ESTIMATE_MINUTES));
     eprintln!(
         "about {} minutes on two cores without a GPU, which should be idle otherwise; after Ctrl-C the same command goes on",
         minutes.sum::<u32>()
@@ -80,14 +81,16 @@ pub fn measure(suites: &[String]) -> anyhow::Result<String> {
         let file = folder.join("out").join(format!("bench-{}.jsonl", run.suite()));
         files.push((file, documents.join(format!("{}.jsonl", run.suite()))));
     }
+    let estimate =
+        is_wanted(ESTIMATE).then(|| estimate::frames(&ESTIMATE_ARGUMENTS.map(str::to_owned))).transpose()?;
+    // Everything is measured: only now are the previous data replaced.
     for (from, to) in &files {
         copy(from, to)?;
     }
-    if is_wanted(ESTIMATE.0) {
-        let (name, arguments) = ESTIMATE;
-        write(&documents.join(name).with_extension("txt"), estimate::frames(&arguments.map(str::to_owned))?)?;
+    if let Some(report) = estimate {
+        write(&documents.join(ESTIMATE).with_extension("txt"), report)?;
     }
-    renew::documents()?;
+    renew::renew_results()?;
     Ok("measured: look at `git diff docs`\n".into())
 }
 

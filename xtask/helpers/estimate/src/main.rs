@@ -29,7 +29,7 @@ use yoro_context::{Backend, Headless};
 use yoro_gl::{Capabilities, Context};
 use yoro_render::stereo::{FrameTargets, HoleMethod, Method, StereoImages, StereoOptions, StereoSession};
 use yoro_render::{DepthReader, PreparedScene, RenderSettings, ViewTargets};
-use yoro_scenes::{BUILTINS, DEFAULT_SEED};
+use yoro_scenes::{BUILTINS, Builtin, DEFAULT_SEED, replacements};
 use yoro_test_support::record::{RecordedPass, Recorder};
 use yoro_viewer::render_settings;
 
@@ -87,10 +87,10 @@ fn main() -> anyhow::Result<()> {
         std::env::var_os("YORO_SHADERS").is_some(),
         "the shaders must count what they run: use cargo xtask maintain estimate"
     );
-    let scenes = BUILTINS.iter().filter(|b| match &args.scenes[..] {
-        [] => !b.stands_for.is_empty(),
-        named => named.iter().any(|s| s == b.name),
-    });
+    let scenes: Vec<&Builtin> = match &args.scenes[..] {
+        [] => replacements().collect(),
+        named => BUILTINS.iter().filter(|builtin| named.iter().any(|name| name == builtin.name)).collect(),
+    };
     let mut estimates = Vec::new();
     for builtin in scenes {
         eprintln!("counting {}", builtin.name);

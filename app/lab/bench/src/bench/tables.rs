@@ -36,11 +36,14 @@ pub(super) fn milliseconds(value: f64) -> String {
     if value >= 100.0 { format!("{value:.0}") } else { format!("{value:.2}") }
 }
 
+/// Formats a PSNR in dB. Identical images have no finite one.
+fn psnr_text(psnr: Option<f64>) -> String {
+    fixed(psnr, 2).unwrap_or_else(|| "∞".into())
+}
+
 /// Formats PSNR and SSIM as in the paper's tables; `None` if SSIM was not measured.
 pub(super) fn psnr_ssim(psnr: Option<f64>, ssim: Option<f64>) -> Option<String> {
-    // Identical images have no finite PSNR.
-    let psnr = fixed(psnr, 2).unwrap_or_else(|| "∞".into());
-    Some(format!("{psnr} / {:.4}", ssim?))
+    Some(format!("{} / {:.4}", psnr_text(psnr), ssim?))
 }
 
 /// The title of tables of [`psnr_ssim_flip`].
@@ -48,8 +51,7 @@ pub(super) const PSNR_SSIM_FLIP: &str = "PSNR in dB/SSIM/FLIP";
 
 /// Formats the three of them; `None` if SSIM or FLIP was not measured. `mean` has the mean of a metric.
 pub(super) fn psnr_ssim_flip(mean: impl Fn(&str) -> Option<f64>) -> Option<String> {
-    // Identical images have no finite PSNR.
-    let psnr = fixed(mean(metric::PSNR), 2).unwrap_or_else(|| "∞".into());
+    let psnr = psnr_text(mean(metric::PSNR));
     Some(format!("{psnr}/{:.4}/{:.3}", mean(metric::SSIM)?, mean(metric::FLIP)?))
 }
 
