@@ -359,18 +359,16 @@ pub struct ForeignTarget {
 }
 
 impl ForeignTarget {
-    /// Creates a framebuffer that draws into a 2-D texture or a layer of an array texture, which holds colour or depth.
+    /// Creates a framebuffer that draws into a 2-D texture, which holds colour or depth.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver cannot render to the texture.
     ///
     /// # Safety
-    /// The texture must belong to this context, have this size, be an array if `layer` is given, and outlive the use of
-    /// the framebuffer.
+    /// The texture must be 2-D, belong to this context, have this size, and outlive the use of the framebuffer.
     pub unsafe fn new(
         gl: &Rc<Context>,
         texture: glow::Texture,
-        layer: Option<u32>,
         is_depth: bool,
         size: [u32; 2],
     ) -> Result<ForeignTarget, GlError> {
@@ -381,7 +379,7 @@ impl ForeignTarget {
                 gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(target.framebuffer.raw));
                 gl.raw().draw_buffers(&[glow::NONE]);
             }
-            target.attach(gl, texture, layer, is_depth)?;
+            target.attach(gl, texture, is_depth)?;
         }
         Ok(target)
     }
@@ -393,44 +391,18 @@ impl ForeignTarget {
     ///
     /// # Safety
     /// As for [`ForeignTarget::new`].
-    pub unsafe fn attach_depth(
-        &self,
-        gl: &Context,
-        texture: glow::Texture,
-        layer: Option<u32>,
-    ) -> Result<(), GlError> {
+    pub unsafe fn attach_depth(&self, gl: &Context, texture: glow::Texture) -> Result<(), GlError> {
         // SAFETY: same contract.
-        unsafe { self.attach(gl, texture, layer, true) }
+        unsafe { self.attach(gl, texture, true) }
     }
 
-    unsafe fn attach(
-        &self,
-        gl: &Context,
-        texture: glow::Texture,
-        layer: Option<u32>,
-        is_depth: bool,
-    ) -> Result<(), GlError> {
+    unsafe fn attach(&self, gl: &Context, texture: glow::Texture, is_depth: bool) -> Result<(), GlError> {
         let raw_gl = gl.raw();
         let attachment = if is_depth { glow::DEPTH_ATTACHMENT } else { glow::COLOR_ATTACHMENT0 };
         // SAFETY: a framebuffer of this context, and the caller's texture is of the kind that the call takes.
         unsafe {
             raw_gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
-            match layer {
-                Some(layer) => raw_gl.framebuffer_texture_layer(
-                    glow::FRAMEBUFFER,
-                    attachment,
-                    Some(texture),
-                    0,
-                    layer as i32,
-                ),
-                None => raw_gl.framebuffer_texture_2d(
-                    glow::FRAMEBUFFER,
-                    attachment,
-                    glow::TEXTURE_2D,
-                    Some(texture),
-                    0,
-                ),
-            }
+            raw_gl.framebuffer_texture_2d(glow::FRAMEBUFFER, attachment, glow::TEXTURE_2D, Some(texture), 0);
             match raw_gl.check_framebuffer_status(glow::FRAMEBUFFER) {
                 glow::FRAMEBUFFER_COMPLETE => Ok(()),
                 status => Err(GlError::Unsupported(format!(

@@ -16,6 +16,9 @@ const ARRAY_UNITS: [u32; 2] = [0, 1];
 const DRAW_BUFFERS: usize = 2;
 /// EXT_depth_bounds_test.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
+/// Of `EXT_texture_sRGB_decode`.
+const TEXTURE_SRGB_DECODE: u32 = 0x8A48;
+const SKIP_DECODE: i32 = 0x8A4A;
 /// For the compatibility profile.
 const ALPHA_TEST: u32 = 0x0BC0;
 const POLYGON_STIPPLE: u32 = 0x0B42;
@@ -47,6 +50,8 @@ pub(crate) struct Host {
     viewports: bool,
     nearest: glow::Sampler,
     linear: glow::Sampler,
+    /// Filters, and does not decode sRGB; `None` if the driver always decodes.
+    stored: Option<glow::Sampler>,
 }
 
 impl Host {
@@ -117,6 +122,12 @@ impl Host {
                 Ok(sampler)
             }
         };
+        let stored = || {
+            let sampler = sampler(glow::LINEAR)?;
+            // SAFETY: the parameter exists with the extension.
+            unsafe { gl.sampler_parameter_i32(sampler, TEXTURE_SRGB_DECODE, SKIP_DECODE) };
+            Ok(sampler)
+        };
         debug_assert!(switches.len() <= 32);
         let indexed = desktop || capabilities.version >= (3, 2);
         Ok(Host {
@@ -128,6 +139,7 @@ impl Host {
             viewports: desktop,
             nearest: sampler(glow::NEAREST)?,
             linear: sampler(glow::LINEAR)?,
+            stored: has("GL_EXT_texture_sRGB_decode").then(stored).transpose()?,
         })
     }
 
@@ -200,6 +212,7 @@ impl Host {
         unsafe {
             gl.delete_sampler(self.nearest);
             gl.delete_sampler(self.linear);
+            self.stored.into_iter().for_each(|sampler| gl.delete_sampler(sampler));
         }
     }
 }
@@ -338,6 +351,17 @@ impl Context {
     pub fn filter_unit(&self, unit: u32) {
         // SAFETY: the sampler lives as long as the context.
         unsafe { self.raw().bind_sampler(unit, Some(self.host.linear)) }
+    }
+
+    /// True if synthesis can read sRGB as it is stored, without decoding it (`EXT_texture_sRGB_decode`).
+    pub fn reads_stored(&self) -> bool {
+        self.host.stored.is_some()
+    }
+
+    /// Makes synthesis read colour as it is stored until [`Context::end_synthesis`], if [`Context::reads_stored`].
+    pub fn read_stored(&self) {
+        // SAFETY: the sampler lives as long as the context.
+        unsafe { self.raw().bind_sampler(FILTERED_UNIT, Some(self.host.stored.unwrap_or(self.host.linear))) }
     }
 
     /// Makes texture unit 0 active. New textures are bound to the active unit, so it must be one that synthesis may

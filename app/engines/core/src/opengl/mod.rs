@@ -77,6 +77,8 @@ pub struct Source {
     pub layer: u32,
     /// What is added to the colours, for a [`Gather`] with [`Options::bloom`].
     pub bloom: Option<Bloom>,
+    /// True if colour is an sRGB texture that is read as it is stored; requires [`Context::reads_stored`].
+    pub stored: bool,
 }
 
 /// Bloom that is not yet part of a source's colours.
@@ -92,7 +94,7 @@ pub struct Bloom {
 impl Source {
     /// Returns a source that is the whole of two textures.
     pub fn new(color: glow::Texture, depth: glow::Texture) -> Source {
-        Source { color, depth, part: None, layer: 0, bloom: None }
+        Source { color, depth, part: None, layer: 0, bloom: None, stored: false }
     }
 
     /// Returns the place of the source, of this size, in its textures, and that of the target.

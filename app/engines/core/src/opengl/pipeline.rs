@@ -225,6 +225,9 @@ impl<W: WarpKind> Pipeline<W> {
         let gl = &*self.gl;
         let [tile_size, span_size] = map_sizes::<W>(warp.sizes());
         gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
+        if source.stored {
+            gl.read_stored();
+        }
         let shaders = W::of(&SHADERS);
         let uniforms = warp.uniforms(&source.places(warp.sizes()[0], target, self.options.parts));
         let begin = |program: &Program| {

@@ -122,8 +122,8 @@ pub struct EyeTarget<'a> {
     /// The 2-D texture whose first level has `color`, and nothing else that is needed, if it is one: samples of a tile-based
     /// GPU are then averaged into it without a copy. It must live as long as the target is used.
     ///
-    /// If it has the size of the view that a method renders for the eye, and the eye's place in that view, the view is
-    /// rendered into the texture.
+    /// If it has the size of the view of which the dominant eye is a part, the view is rendered into the texture where that is
+    /// possible, and [`FrameReport::origin`](super::FrameReport::origin) says where in it the eye is.
     pub texture: Option<(glow::Texture, Image)>,
     /// Receives the eye's window depth; `None` if it is not needed.
     pub depth: Option<DepthTarget<'a>>,
@@ -143,14 +143,24 @@ impl EyeTarget<'_> {
         }
     }
 
+    /// True if the target begins in the corner of a texture of this size that is read as it is stored.
+    pub(super) fn has_room(&self, size: [u32; 2], renderer: &Renderer, scene: &GpuScene) -> bool {
+        let is_read = |format| format == Format::Rgba8 || renderer.reads_stored(scene);
+        let fits = |(_, image): (glow::Texture, Image)| image.size == size && is_read(image.format);
+        self.color.origin == [0, 0] && self.texture.is_some_and(fits)
+    }
+
     /// Returns the texture as the target of a view of which the eye is this part, if the texture is as large as the view and
     /// the eye has this place in it.
-    pub(super) fn around(&self, part: Part) -> Option<EyeTarget<'static>> {
-        // A texture of sRGB would be decoded where the synthesis reads it.
-        let fits = |(_, image): &(glow::Texture, Image)| {
-            image.format == Format::Rgba8 && image.size == part.image_size
-        };
-        let texture = self.texture.filter(|texture| fits(texture) && self.color.origin == part.origin)?;
+    pub(super) fn around(
+        &self,
+        part: Part,
+        renderer: &Renderer,
+        scene: &GpuScene,
+    ) -> Option<EyeTarget<'static>> {
+        let corner = EyeTarget { color: Destination { origin: [0, 0], ..self.color }, ..*self };
+        let has_room = self.color.origin == part.origin && corner.has_room(part.image_size, renderer, scene);
+        let texture = self.texture.filter(|_| has_room)?;
         let color = Destination { origin: [0, 0], size: part.image_size, ..self.color };
         Some(EyeTarget { texture: Some(texture), ..EyeTarget::rectangle(color) })
     }

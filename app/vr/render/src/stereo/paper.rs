@@ -106,6 +106,9 @@ impl Synthesis for Paper {
         self.gl.set_first_unit();
         self.prepare(warp)?;
         self.gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
+        if source.stored {
+            self.gl.read_stored();
+        }
         let gl = &self.gl;
         let raw = gl.raw();
         let uniforms = Uniforms::new(warp, target.origin);

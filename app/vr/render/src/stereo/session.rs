@@ -79,6 +79,8 @@ pub struct FrameReport {
     pub has_motion: bool,
     /// True if the targets' depth is that of what is shown.
     pub has_depth: bool,
+    /// The first pixel of the dominant eye: beyond [0, 0] if it is a part of the view that was rendered into its texture.
+    pub origin: [u32; 2],
 }
 
 /// How a frame is rendered.
@@ -204,6 +206,14 @@ impl StereoSession {
         self.rate.interrupt();
     }
 
+    /// Returns the size in pixels of the view of which the dominant eye is a part, if that view is rendered into the eye's
+    /// texture where it is as large ([`EyeTarget::texture`]), also if that is sRGB.
+    pub fn rendered_size(&self, scene: &PreparedScene, views: &StereoViews) -> Option<[u32; 2]> {
+        let [wide, _] = self.chosen.rendered_parts(scene, views);
+        let is_read = views.inset.is_none() && scene.renderer.reads_stored(&scene.scene);
+        wide.filter(|_| is_read).map(|part| part.image_size)
+    }
+
     /// Renders both eyes of a frame. `previous` is the load of the frame before it, for what is chosen by time; `None` for a
     /// first frame, and where nothing is.
     ///
@@ -232,10 +242,19 @@ impl StereoSession {
             _ => None,
         };
         let mut targets = targets;
+        let mut origin = [0, 0];
         let to = match (&mut targets, &mut own) {
             (FrameTargets::Images(images), _) => images.fit(views, is_synthesized, parts)?,
             (FrameTargets::Layers(layers), _) => *layers,
-            (FrameTargets::Eyes(to), None) => LayerTargets { wide: *to, inset: None },
+            (FrameTargets::Eyes(to), None) => {
+                let dominant = &mut to[views.shown.dominant.index()];
+                if let Some(part) =
+                    parts[0].filter(|part| dominant.has_room(part.image_size, &scene.renderer, &scene.scene))
+                {
+                    (dominant.color.origin, origin) = (part.origin, part.origin);
+                }
+                LayerTargets { wide: *to, inset: None }
+            }
             (FrameTargets::Eyes(to), Some(images)) => {
                 self.layers_of(images.fit(views, is_synthesized, parts)?, views, to)
             }
@@ -263,7 +282,7 @@ impl StereoSession {
             _ => {}
         }
         self.images = own.or(self.images.take());
-        Ok(FrameReport { fallback, has_motion, has_depth })
+        Ok(FrameReport { fallback, has_motion, has_depth, origin })
     }
 
     /// Decides how a frame is rendered. This is the only place that decides that both eyes must be.

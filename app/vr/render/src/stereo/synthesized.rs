@@ -14,7 +14,7 @@ use crate::view::{
 use yoro::eyes::{Eye, SynthesisViews, ViewLayer};
 use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Part, Source};
 use yoro::synthesis::{HoleMark, Holes};
-use yoro_gl::{Context, Destination, GlError};
+use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
 
 /// One render with a guard band and one synthesis.
 ///
@@ -148,7 +148,7 @@ impl StereoMethod for Synthesized {
         let pair = &frame.pair;
         let renderer = frame.renderer;
         let part = self.rendered_part(renderer, &frame.scene, &frame.layer);
-        let shown = part.and_then(|part| frame.to(pair.dominant).around(part));
+        let shown = part.and_then(|part| frame.to(pair.dominant).around(part, renderer, &frame.scene));
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let views = frame.synthesis_views(self.options.guard_band)?;
         let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
@@ -165,9 +165,11 @@ impl StereoMethod for Synthesized {
             renderer.composite(targets, &views.source, Eye::Left, [0, 0], &to, None);
         }
         let composited = targets.composited.as_ref().filter(|_| is_composited);
-        let picture = composited.map_or(targets.picture().0, |picture| picture.color(0).raw());
+        let own = |picture: &RenderTarget| (picture.color(0).raw(), picture.color(0).image());
+        let (picture, image) = composited.map_or_else(|| targets.picture(), own);
         let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
-        let mut source = Source::new(picture, depth.texture.raw());
+        let stored = image.format == Format::Srgb8Alpha8;
+        let mut source = Source { stored, ..Source::new(picture, depth.texture.raw()) };
         if let Some(guess) = guess {
             source = guess.guess(source, &views.warp)?;
         }
@@ -243,10 +245,7 @@ impl Rendered<'_> {
             synthesis.synthesize(self.source, warp, to)?;
             inked.inspect(|inked| inked.mark(to));
             renderer.draw_holes(&frame.scene, &view, to, samples, &source);
-            if inked.is_some() {
-                // Nothing reads the stencil once the holes are drawn, and these samples are stored.
-                frame.renderer.gl.discard_stencil();
-            }
+            inked.inspect(|inked| inked.average());
             Ok::<(), GlError>(())
         };
         let Some(inked) = inked else { return draw(to, samples, None) };

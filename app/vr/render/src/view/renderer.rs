@@ -258,6 +258,13 @@ impl Renderer {
         !self.has_composite() && !self.ink
     }
 
+    /// True if a view of this scene can be rendered into a texture of sRGB and read as it is stored there. Where samples are
+    /// not kept in tiles, transparent surfaces need a pass that decodes it.
+    pub(crate) fn reads_stored(&self, scene: &GpuScene) -> bool {
+        let is_loaded = scene.has_transparent() && self.settings.msaa > 1;
+        self.gl.reads_stored() && (!is_loaded || self.gl.capabilities().tile_samples)
+    }
+
     /// Returns the factor on the bloom in the targets.
     pub(crate) fn bloom_strength(&self) -> f32 {
         bloom::STRENGTH * self.settings.exposure / bloom::hdr_scale(&self.gl)

@@ -30,10 +30,10 @@ pub struct Description {
     pub inset_size: Option<[u32; 2]>,
     /// Format of the images.
     pub format: String,
-    /// True if both eyes are layers of one swapchain.
-    pub array: bool,
     /// True if eyes are drawn straight into the runtime's images.
     pub direct: bool,
+    /// True if these can also be read, so that the other eye can be synthesized of what is rendered into them.
+    pub readable: bool,
     /// Format of the depth that is submitted, if any.
     pub depth: Option<String>,
     /// True if the lenses hide part of the images.
@@ -57,13 +57,16 @@ impl Description {
         let insets = self.inset_size.map_or(String::new(), |[w, h]| format!(", insets of {w}x{h}"));
         let rates: Vec<String> = self.refresh_rates.iter().map(|hz| format!("{hz:.0}")).collect();
         log::info!(
-            "OpenXR: {}, system {}, {} views of {w}x{h}{insets} ({} as {}, {}), depth {}, hidden part {}, refresh rates {}",
+            "OpenXR: {}, system {}, {} views of {w}x{h}{insets} ({}, {}), depth {}, hidden part {}, refresh rates {}",
             self.runtime,
             self.system,
             self.views,
             self.format,
-            if self.array { "one array" } else { "two swapchains" },
-            if self.direct { "drawn straight into" } else { "drawn aside and decoded" },
+            match (self.direct, self.readable) {
+                (true, true) => "rendered into",
+                (true, false) => "drawn straight into",
+                _ => "drawn aside and decoded",
+            },
             self.depth.as_deref().unwrap_or("none"),
             if self.mask { "masked" } else { "unknown" },
             if rates.is_empty() { "unknown".to_owned() } else { format!("{} Hz", rates.join(", ")) },

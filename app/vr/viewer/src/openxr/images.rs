@@ -1,4 +1,4 @@
-//! The runtime's images, with a framebuffer for each of their layers.
+//! The runtime's images, with a framebuffer for each.
 
 use std::num::NonZeroU32;
 use std::rc::Rc;
@@ -28,7 +28,6 @@ pub(super) struct ImageSpec {
     /// True if the runtime reads depth. It always reads colour.
     pub is_sampled: bool,
     pub size: [u32; 2],
-    pub layers: u32,
     /// The flags of images whose density the runtime can change.
     pub foveation: Option<sys::SwapchainCreateFoveationFlagsFB>,
 }
@@ -36,10 +35,9 @@ pub(super) struct ImageSpec {
 /// A swapchain.
 pub(super) struct Images {
     // Dropped first: the framebuffers refer to the swapchain's images.
-    /// Indexed by image and layer.
-    framebuffers: Vec<Vec<ForeignTarget>>,
-    /// Those with an image of another swapchain as depth: by image, layer and the other's image.
-    with_depth: Vec<([usize; 3], ForeignTarget)>,
+    framebuffers: Vec<ForeignTarget>,
+    /// Those with an image of another swapchain as depth: by image and the other's image.
+    with_depth: Vec<([usize; 2], ForeignTarget)>,
     textures: Vec<glow::Texture>,
     swapchain: xr::Swapchain<xr::OpenGlEs>,
     instance: xr::Instance,
@@ -78,7 +76,7 @@ impl Images {
             width: spec.size[0],
             height: spec.size[1],
             face_count: 1,
-            array_size: spec.layers,
+            array_size: 1,
             mip_count: 1,
         };
         let mut swapchain = sys::Swapchain::NULL;
@@ -100,16 +98,12 @@ impl Images {
             None => Err(XrError::InvalidRuntimeData("offers an image without a name".into())),
         };
         let textures = images.into_iter().map(name).collect::<Result<Vec<_>, _>>()?;
-        let framebuffers = textures.iter().map(|texture| {
-            let framebuffer = |layer| {
-                let layer = (spec.layers > 1).then_some(layer);
-                // SAFETY: the textures live as long as the swapchain, which the framebuffers do not outlive.
-                unsafe { ForeignTarget::new(gl, *texture, layer, spec.is_depth, spec.size) }
-            };
-            (0..spec.layers).map(framebuffer).collect::<Result<Vec<_>, _>>().map_err(XrError::Gl)
-        });
+        // SAFETY: the textures live as long as the swapchain, which the framebuffers do not outlive.
+        let framebuffer =
+            |texture: &glow::Texture| unsafe { ForeignTarget::new(gl, *texture, spec.is_depth, spec.size) };
+        let framebuffers = textures.iter().map(framebuffer).collect::<Result<_, _>>().map_err(XrError::Gl)?;
         Ok(Images {
-            framebuffers: framebuffers.collect::<Result<_, _>>()?,
+            framebuffers,
             with_depth: Vec::new(),
             textures,
             swapchain,
@@ -172,32 +166,28 @@ impl Images {
         self.with_depth.clear();
     }
 
-    /// Returns the destination for a layer of the acquired image.
-    pub fn destination(&self, layer: u32, size: [u32; 2]) -> Option<Destination> {
-        let image = self.framebuffers.get(self.current?)?;
-        Some(image.get(layer as usize)?.part(size))
+    /// Returns the lower left part, of this size, of the acquired image.
+    pub fn destination(&self, size: [u32; 2]) -> Option<Destination> {
+        Some(self.framebuffers.get(self.current?)?.part(size))
     }
 
-    /// Returns the destination for a layer of the acquired image and of another swapchain's as depth. Its framebuffer is made
-    /// when the two images are first acquired together.
+    /// Returns the destination for the acquired image, with that of another swapchain as depth. Its framebuffer is made when
+    /// the two images are first acquired together.
     fn with_depth(
         &mut self,
         gl: &Rc<Context>,
-        layer: u32,
         size: [u32; 2],
-        depth: ImageLayer,
+        depth: &Images,
     ) -> Result<Option<Destination>, GlError> {
-        let Some((color, with)) = self.current.zip(depth.images.current) else { return Ok(None) };
-        let key = [color, layer as usize, with];
+        let Some((color, with)) = self.current.zip(depth.current) else { return Ok(None) };
+        let key = [color, with];
         if let Some((_, target)) = self.with_depth.iter().find(|(known, _)| *known == key) {
             return Ok(Some(target.part(size)));
         }
-        let of = |images: &Images, layer| (images.spec.layers > 1).then_some(layer);
         // SAFETY: the textures live as long as their swapchains, which are closed together with the framebuffers.
         let target = unsafe {
-            let target =
-                ForeignTarget::new(gl, self.textures[color], of(self, layer), false, self.spec.size)?;
-            target.attach_depth(gl, depth.images.textures[with], of(depth.images, depth.layer))?;
+            let target = ForeignTarget::new(gl, self.textures[color], false, self.spec.size)?;
+            target.attach_depth(gl, depth.textures[with])?;
             target
         };
         let part = target.part(size);
@@ -205,94 +195,88 @@ impl Images {
         Ok(Some(part))
     }
 
-    /// Returns the acquired image, if it is a plain 2-D texture of 8-bit sRGB.
+    /// Returns the acquired image as a texture, if it stores 8-bit sRGB.
     fn texture(&self) -> Option<(glow::Texture, Image)> {
-        let ImageSpec { format, size, layers, .. } = self.spec;
-        let is_plain = layers == 1 && format == glow::SRGB8_ALPHA8;
         let texture = *self.textures.get(self.current?)?;
-        is_plain.then_some((texture, Image { format: Format::Srgb8Alpha8, size, samples: 1 }))
+        let image = Image { format: Format::Srgb8Alpha8, size: self.spec.size, samples: 1 };
+        (self.spec.format == glow::SRGB8_ALPHA8).then_some((texture, image))
     }
 
-    /// Returns the lower left part of a layer, as xrEndFrame takes it.
-    pub fn sub_image(&self, layer: u32, size: [u32; 2]) -> sys::SwapchainSubImage {
+    /// Returns a rectangle of an image, as xrEndFrame takes it.
+    pub fn sub_image(&self, origin: [u32; 2], size: [u32; 2]) -> sys::SwapchainSubImage {
+        let ([x, y], [width, height]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
         sys::SwapchainSubImage {
             swapchain: self.swapchain.as_raw(),
             image_rect: xr::Rect2Di {
-                offset: xr::Offset2Di { x: 0, y: 0 },
-                extent: xr::Extent2Di { width: size[0] as i32, height: size[1] as i32 },
+                offset: xr::Offset2Di { x, y },
+                extent: xr::Extent2Di { width, height },
             },
-            image_array_index: layer,
+            image_array_index: 0,
         }
     }
 }
 
-/// A layer of a swapchain's images.
-#[derive(Clone, Copy)]
-struct ImageLayer<'a> {
-    images: &'a Images,
-    layer: u32,
+/// The images of both eyes.
+pub(super) struct EyeImages {
+    eyes: [Images; 2],
+    /// Where each eye begins in the image that was drawn last.
+    origins: [[u32; 2]; 2],
 }
 
-/// The images of both eyes: two layers of one swapchain, or two swapchains if the runtime does not support arrays.
-pub(super) struct EyeImages(Vec<Images>);
-
 impl EyeImages {
-    /// Creates the images. `spec.layers` is ignored: two layers are tried first.
+    /// Creates the images.
     pub fn new(
         graphics: &dyn Graphics,
         gl: &Rc<Context>,
         session: &xr::Session<xr::OpenGlEs>,
         spec: ImageSpec,
     ) -> Result<EyeImages, XrError> {
-        match Images::new(graphics, gl, session, ImageSpec { layers: 2, ..spec }) {
-            Ok(images) => Ok(EyeImages(vec![images])),
-            Err(error) if error.is_loss() => Err(error),
-            Err(error) => {
-                log::info!("each eye has its own swapchain, since {error}");
-                let single = || Images::new(graphics, gl, session, ImageSpec { layers: 1, ..spec });
-                Ok(EyeImages(vec![single()?, single()?]))
-            }
+        let image = || Images::new(graphics, gl, session, spec);
+        Ok(EyeImages { eyes: [image()?, image()?], origins: [[0, 0]; 2] })
+    }
+
+    /// Makes an eye's images of this size, unless they have it. Returns true if they were made. If they cannot be, they stay.
+    pub fn fit(
+        &mut self,
+        graphics: &dyn Graphics,
+        gl: &Rc<Context>,
+        session: &xr::Session<xr::OpenGlEs>,
+        eye: Eye,
+        size: [u32; 2],
+    ) -> Result<bool, XrError> {
+        let images = &mut self.eyes[eye.index()];
+        let fits = images.spec.size == size;
+        if !fits {
+            *images = Images::new(graphics, gl, session, ImageSpec { size, ..images.spec })?;
         }
+        Ok(!fits)
+    }
+
+    /// Sets where an eye begins in the acquired image.
+    pub fn set_origin(&mut self, eye: Eye, origin: [u32; 2]) {
+        self.origins[eye.index()] = origin;
     }
 
     /// Returns the swapchains.
     pub fn swapchains(&self) -> impl Iterator<Item = sys::Swapchain> {
-        self.0.iter().map(|images| images.swapchain.as_raw())
-    }
-
-    /// True if both eyes are layers of one swapchain.
-    pub fn is_array(&self) -> bool {
-        self.0.len() == 1
-    }
-
-    /// Returns the index of an eye's swapchain, and its layer.
-    fn place(&self, eye: Eye) -> (usize, u32) {
-        if self.is_array() { (0, eye.index() as u32) } else { (eye.index(), 0) }
-    }
-
-    fn of(&self, eye: Eye) -> ImageLayer<'_> {
-        let (swapchain, layer) = self.place(eye);
-        ImageLayer { images: &self.0[swapchain], layer }
+        self.eyes.iter().map(|images| images.swapchain.as_raw())
     }
 
     pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
-        self.0.iter_mut().try_for_each(|images| images.acquire(graphics))
+        self.eyes.iter_mut().try_for_each(|images| images.acquire(graphics))
     }
 
     pub fn release(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
-        self.0.iter_mut().try_for_each(|images| images.release(graphics))
+        self.eyes.iter_mut().try_for_each(|images| images.release(graphics))
     }
 
     pub fn close(&mut self) {
-        self.0.iter_mut().for_each(Images::close);
+        self.eyes.iter_mut().for_each(Images::close);
     }
 
-    /// Returns the destinations of both eyes.
+    /// Returns the destinations of both eyes, in the lower left of their images.
     pub fn destinations(&self, size: [u32; 2]) -> Option<[Destination; 2]> {
-        let [left, right] = Eye::BOTH.map(|eye| {
-            let ImageLayer { images, layer } = self.of(eye);
-            images.destination(layer, size)
-        });
+        let [left, right] = Eye::BOTH.map(|eye| self.eyes[eye.index()].destination(size));
         Some([left?, right?])
     }
 
@@ -303,10 +287,7 @@ impl EyeImages {
         depth: &EyeImages,
         size: [u32; 2],
     ) -> Result<Option<[Destination; 2]>, GlError> {
-        let mut of = |eye| {
-            let (swapchain, layer) = self.place(eye);
-            self.0[swapchain].with_depth(gl, layer, size, depth.of(eye))
-        };
+        let mut of = |eye: Eye| self.eyes[eye.index()].with_depth(gl, size, &depth.eyes[eye.index()]);
         Ok(of(Eye::Left)?.zip(of(Eye::Right)?).map(|(left, right)| [left, right]))
     }
 
@@ -314,13 +295,13 @@ impl EyeImages {
     pub fn targets(&self, size: [u32; 2]) -> Option<[EyeTarget<'static>; 2]> {
         let colors = self.destinations(size)?;
         Some(Eye::BOTH.map(|eye| EyeTarget {
-            texture: self.of(eye).images.texture(),
+            texture: self.eyes[eye.index()].texture(),
             ..EyeTarget::rectangle(colors[eye.index()])
         }))
     }
 
+    /// Returns an eye's rectangle, as xrEndFrame takes it.
     pub fn sub_image(&self, eye: Eye, size: [u32; 2]) -> sys::SwapchainSubImage {
-        let ImageLayer { images, layer } = self.of(eye);
-        images.sub_image(layer, size)
+        self.eyes[eye.index()].sub_image(self.origins[eye.index()], size)
     }
 }

@@ -89,7 +89,7 @@ impl MotionImages {
             return Ok(None);
         };
         let images = |format, is_depth| {
-            let spec = ImageSpec { format, is_depth, is_sampled: true, size, layers: 2, foveation: None };
+            let spec = ImageSpec { format, is_depth, is_sampled: true, size, foveation: None };
             EyeImages::new(graphics, gl, session, spec)
         };
         let made = images(vectors, false).and_then(|vectors| Ok((vectors, images(depth, true)?)));

@@ -55,6 +55,12 @@ impl Viewer {
         Ok(report)
     }
 
+    /// Returns the size in pixels that the dominant eye's texture must have to be rendered into, if it can be.
+    pub fn rendered_size(&self, views: &StereoViews) -> Option<[u32; 2]> {
+        let (session, shown) = self.session.as_ref().zip(self.scene.shown.as_ref())?;
+        session.rendered_size(&shown.prepared, views)
+    }
+
     /// Says whether the display's runtime makes the frames between those that are rendered, from colour, depth and motion
     /// vectors.
     ///

@@ -9,7 +9,7 @@ use super::eyes::{from_frustum, from_pose};
 use super::state::{PanelImages, RuntimeLevel, Session};
 use crate::event::Action;
 use crate::openxr::description::Capture;
-use crate::openxr::error::{XrError, check};
+use crate::openxr::error::{XrError, check, optional};
 use crate::openxr::images::EyeImages;
 use crate::openxr::motion::{MotionInfo, ends};
 use crate::viewer::Viewer;
@@ -22,6 +22,8 @@ use yoro_settings::Ipd;
 
 /// Both eyes and their insets.
 const MAX_VIEWS: usize = 4;
+/// An eye's images are made for another size at most so often: eyes of a runtime that never keep still are copied.
+const MAX_REMADE: u32 = 32;
 
 /// The layers of a frame.
 pub(super) struct Layers {
@@ -39,6 +41,8 @@ pub(super) struct Submitted {
 /// What the runtime gets beside colour.
 #[derive(Clone, Copy)]
 pub(super) struct Drawn {
+    /// Where the dominant eye begins in its image.
+    pub origin: [u32; 2],
     /// The size in pixels of the wide eyes' depth: that of their images, or that of the level of which this program has
     /// composed them with an inset. `None` if it is not of the submitted frusta.
     pub depth_size: Option<[u32; 2]>,
@@ -93,6 +97,7 @@ impl Session {
             _ => in_scene,
         };
         let is_composed = in_scene.inset.is_none() && views.inset.is_some();
+        self.fit_images(graphics, viewer, &views)?;
         if let Some(foveation) = &mut self.fixed_foveation {
             let level = if is_composed { viewer.settings().foveation } else { None };
             foveation.set(graphics, &self.session, &self.wide.eyes, level.unwrap_or_default())?;
@@ -111,8 +116,10 @@ impl Session {
             inset: inset.map(|(own, layer)| targets(own, &layer.eyes)).transpose()?,
         };
         let rendered = self.render_eyes(viewer, &views, &images)?;
-        if capture && rendered.is_some() {
-            let eyes = images.wide.map(|image| self.gl.read_rgba8(&image.color));
+        if let Some(drawn) = rendered.filter(|_| capture) {
+            let mut colors = images.wide.map(|image| image.color);
+            colors[in_scene.shown.dominant.index()].origin = drawn.origin;
+            let eyes = colors.map(|color| self.gl.read_rgba8(&color));
             *captured = Some(Capture { eyes, pair: in_scene.shown });
         }
         self.wide.release(graphics)?;
@@ -123,6 +130,35 @@ impl Session {
         Ok(Layers { eyes: Some(Submitted { views: shown, drawn }), panel })
     }
 
+    /// Makes the image of the dominant eye as large as the view of which the eye is a part, if that view can be rendered into
+    /// it: then the eye need not be copied out of the view.
+    fn fit_images(
+        &mut self,
+        graphics: &dyn Graphics,
+        viewer: &Viewer,
+        views: &StereoViews,
+    ) -> Result<(), XrError> {
+        if self.views != xr::ViewConfigurationType::PRIMARY_STEREO || !self.description.readable {
+            return Ok(());
+        }
+        let level = &mut self.wide;
+        let is_possible = |size: &[u32; 2]| (0..2).all(|i| size[i] <= level.largest[i]);
+        let rendered = viewer.rendered_size(views).filter(is_possible);
+        let rendered = rendered.filter(|_| self.remade < MAX_REMADE);
+        let mut fit = |eye, size| level.eyes.fit(graphics, &self.gl, &self.session, eye, size);
+        for eye in Eye::BOTH {
+            let size = rendered.filter(|_| eye == views.shown.dominant);
+            let fitted =
+                size.map(|size| optional("the rendered eye is copied", fit(eye, size))).transpose()?;
+            match fitted {
+                Some(Some(is_new)) => self.remade += u32::from(is_new),
+                Some(None) => self.remade = MAX_REMADE,
+                None => fit(eye, level.size).map(drop)?,
+            }
+        }
+        Ok(())
+    }
+
     /// Renders both eyes into images; `None` if the viewer cannot.
     fn render_eyes(
         &mut self,
@@ -131,7 +167,7 @@ impl Session {
         images: &LayerTargets<'static>,
     ) -> Result<Option<Drawn>, XrError> {
         let mut to: LayerTargets = self.storage.begin(*images)?;
-        let colors = to.wide.map(|eye| eye.color);
+        let mut colors = to.wide.map(|eye| eye.color);
         let place = viewer.place(Pose::IDENTITY);
         let copy = self.depth_copy.as_ref();
         let depth_size = views.wide.eyes.size;
@@ -150,6 +186,11 @@ impl Session {
             None => FrameTargets::Eyes(to.wide),
         };
         let rendered = viewer.render(views, targets);
+        let (dominant, origin) =
+            (views.shown.dominant, rendered.as_ref().map_or([0, 0], |report| report.origin));
+        colors[dominant.index()].origin = origin;
+        self.wide.eyes.set_origin(dominant, origin);
+        self.wide.eyes.set_origin(dominant.other(), [0, 0]);
         let is_previous = leaves_frame && rendered.is_ok();
         if let Some(motion) = &mut self.motion {
             motion.remember(is_previous.then_some((views.shown, place)));
@@ -163,6 +204,7 @@ impl Session {
         // The runtime may read the images on another queue. SAFETY: `flush` has no arguments.
         unsafe { glow::HasContext::flush(self.gl.raw()) };
         let drawn = self.log_error(rendered).map(|report| Drawn {
+            origin,
             depth_size: report.has_depth.then_some(depth_size),
             leaves_frame,
             has_motion: report.has_motion,
@@ -192,14 +234,14 @@ impl Session {
         if let Some(place) = viewer.menu_place() {
             // The dot that shows where the user points moves with each frame.
             images.acquire(graphics)?;
-            if let Some(to) = images.destination(0, Board::SIZE) {
+            if let Some(to) = images.destination(Board::SIZE) {
                 viewer.draw_menu_image(&to);
                 // SAFETY: `flush` has no arguments.
                 unsafe { glow::HasContext::flush(self.gl.raw()) };
             }
             images.release(graphics)?;
             *version = None;
-            let sub_image = images.sub_image(0, Board::SIZE);
+            let sub_image = images.sub_image([0, 0], Board::SIZE);
             return Ok(Some(quad(&self.spaces.ahead, sub_image, from_pose(&place), board_metres())));
         }
         let panel = match viewer.hud() {
@@ -212,7 +254,7 @@ impl Session {
         };
         if *version != Some(panel.version()) {
             images.acquire(graphics)?;
-            if let Some(to) = images.destination(0, panel.size()) {
+            if let Some(to) = images.destination(panel.size()) {
                 panel.draw(&to);
                 // SAFETY: `flush` has no arguments.
                 unsafe { glow::HasContext::flush(self.gl.raw()) };
@@ -223,7 +265,7 @@ impl Session {
         let (metres, center) = (panel.metres(), panel.center());
         let mut pose = xr::Posef::IDENTITY;
         pose.position = xr::Vector3f { x: center.x, y: center.y, z: center.z };
-        Ok(Some(quad(&self.spaces.head, images.sub_image(0, panel.size()), pose, metres)))
+        Ok(Some(quad(&self.spaces.head, images.sub_image([0, 0], panel.size()), pose, metres)))
     }
 
     /// Calls xrEndFrame.

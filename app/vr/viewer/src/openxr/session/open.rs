@@ -80,8 +80,8 @@ impl Session {
             size: wide.size,
             inset_size: inset.as_ref().map(|inset| inset.size),
             format: storage::format_name(color),
-            array: wide.eyes.is_array(),
             direct: storage.is_direct(),
+            readable: storage.is_direct() && gl.reads_stored(),
             depth: depth.as_ref().map(|(format, _)| storage::format_name(*format)),
             mask: mask.as_ref().is_some_and(Mask::hides),
             refresh_rates,
@@ -111,6 +111,7 @@ impl Session {
             is_running: false,
             applied: None,
             realigned: None,
+            remade: 0,
             recenter: false,
             events: Vec::with_capacity(8),
             last_error: String::new(),
@@ -219,16 +220,17 @@ impl Recommended {
 
     /// Returns the size, and the size of the images: scaled, and within a limit in pixels.
     fn scaled(&self, scale: f32, limit: u32) -> LevelSize {
-        let size = image_size(self.size, scale, self.largest.map(|n| n.min(limit)));
-        LevelSize { recommended: self.size, size }
+        let largest = self.largest.map(|n| n.min(limit));
+        LevelSize { recommended: self.size, size: image_size(self.size, scale, largest), largest }
     }
 }
 
-/// The size in pixels that the runtime recommends for each eye of a level, and that of the images.
+/// The size in pixels that the runtime recommends for each eye of a level, that of the images, and the largest possible one.
 #[derive(Clone, Copy)]
 struct LevelSize {
     recommended: [u32; 2],
     size: [u32; 2],
+    largest: [u32; 2],
 }
 
 impl System {
@@ -293,11 +295,10 @@ impl FrameImages {
             XrError::InvalidRuntimeData("offers no format of images that OpenGL ES can draw to".into())
         })?;
         let foveation = fixed_foveation::flags(session, gl);
-        let level = |LevelSize { recommended, size }: LevelSize| {
-            let spec =
-                ImageSpec { format: color, is_depth: false, is_sampled: true, size, layers: 2, foveation };
+        let level = |LevelSize { recommended, size, largest }: LevelSize| {
+            let spec = ImageSpec { format: color, is_depth: false, is_sampled: true, size, foveation };
             let eyes = EyeImages::new(graphics, gl, session, spec)?;
-            Ok::<_, XrError>(RuntimeLevel { eyes, depth: None, recommended, size })
+            Ok::<_, XrError>(RuntimeLevel { eyes, depth: None, recommended, size, largest })
         };
         let mut levels = sizes.iter().map(|size| level(*size)).collect::<Result<Vec<_>, _>>()?;
         let depth = match session.instance().exts().khr_composition_layer_depth {
@@ -312,7 +313,7 @@ impl FrameImages {
             graphics,
             gl,
             session,
-            ImageSpec { format: color, is_depth: false, is_sampled: true, size, layers: 1, foveation: None },
+            ImageSpec { format: color, is_depth: false, is_sampled: true, size, foveation: None },
         );
         let panel = optional("there is no HUD", panel)?.map(|images| PanelImages { images, version: None });
         let mut levels = levels.into_iter();
@@ -335,7 +336,7 @@ fn make_depth(
     };
     let images = |level: &RuntimeLevel| {
         let (size, foveation) = (level.size, None);
-        let spec = ImageSpec { format, is_depth: true, is_sampled: false, size, layers: 2, foveation };
+        let spec = ImageSpec { format, is_depth: true, is_sampled: false, size, foveation };
         EyeImages::new(graphics, gl, session, spec)
     };
     let (images, copy) = (levels.iter().map(images).collect::<Result<Vec<_>, _>>()?, DepthCopy::new(gl)?);

@@ -41,8 +41,9 @@ pub struct RuntimeLevel {
     pub depth: Option<EyeImages>,
     /// The size in pixels that the runtime recommends for each eye.
     pub recommended: [u32; 2],
-    /// The size in pixels of the images.
+    /// The size in pixels of the images of a whole eye, and the largest possible one.
     pub size: [u32; 2],
+    pub largest: [u32; 2],
 }
 
 impl RuntimeLevel {
@@ -100,6 +101,8 @@ pub struct Session {
     pub(super) applied: Option<(Option<f32>, Performance)>,
     /// The reason why the eyes are not rendered as the runtime locates them, if so.
     pub(super) realigned: Option<EyesError>,
+    /// How often an eye's images were made for another size.
+    pub(super) remade: u32,
     pub(super) recenter: bool,
     /// The user's actions, for the next frame.
     pub events: Vec<Event>,
