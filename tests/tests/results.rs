@@ -98,3 +98,29 @@ fn the_documents_have_the_tables_and_plots_of_the_data() {
     let all = files.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     assert_eq!(used, all, "the files of docs/results that a document shows");
 }
+
+/// What a view must cost for synthesis to be worth it is said in sentences, too.
+#[test]
+fn sentences_have_the_figures_of_the_estimate() {
+    let estimate = fs::read_to_string(root().join("docs/results/estimate.txt")).unwrap();
+    let table = printed(&estimate, "Synthesis is worth it when a view costs the GPU more than this, in ms");
+    let row = |frames: &str| -> Vec<&str> {
+        let row = table.lines().find_map(|line| line.strip_prefix(&format!("| {frames} | **`yoro`** |")));
+        row.unwrap().trim_end_matches('|').split('|').map(str::trim).collect()
+    };
+    let (bloom, none) = (row("bloom"), row("no bloom"));
+    let [quest_2, quest_3, frame] = [0, 1, 2].map(|i| bloom[i]);
+    let sentences = [
+        ("README.md", format!("{quest_3} ms on a Quest 3 or {quest_2} ms on a Quest 2")),
+        (
+            "docs/performance.md",
+            format!("{quest_2} ms on a Quest 2, {quest_3} on a Quest 3, {frame} on a Steam Frame"),
+        ),
+        ("docs/performance.md", format!("(without bloom {}, {}, {}", none[0], none[1], none[2])),
+    ];
+    for (document, sentence) in sentences {
+        let text = fs::read_to_string(root().join(document)).unwrap();
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(&sentence), "{document} does not say: {sentence}");
+    }
+}

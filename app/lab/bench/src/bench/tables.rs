@@ -3,7 +3,7 @@
 use super::record::metric;
 use super::results::{CONVENTIONAL, MONO, Measured, SettingData, Spread, SuiteData};
 use yoro_report::paper::{self, PAPER, PaperScene};
-use yoro_report::stats::{mean, percentile, unique};
+use yoro_report::stats::{geometric_mean, mean, percentile, unique};
 use yoro_report::text::{fixed, short_count};
 use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
 
@@ -65,6 +65,14 @@ pub(super) fn cost_of(setting: &SettingData, name: &str) -> Option<String> {
     }
     let Spread { median, quartiles: [low, high] } = setting.cost(name)?;
     Some(format!("{median:.2} ({low:.2}–{high:.2})"))
+}
+
+/// Formats the geometric mean of ratios, with the least and the most of them: `0.54 (0.50–0.58)`; `None` without any.
+pub(super) fn mean_and_range(ratios: impl Iterator<Item = f64>) -> Option<String> {
+    let ratios: Vec<f64> = ratios.collect();
+    let range = ratios.iter().fold([f64::MAX, f64::MIN], |[low, high], r| [low.min(*r), high.max(*r)]);
+    let mean = geometric_mean(ratios)?;
+    Some(format!("{mean:.2} ({:.2}–{:.2})", range[0], range[1]))
 }
 
 /// Returns PSNR and SSIM of a contender.

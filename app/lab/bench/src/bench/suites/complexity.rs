@@ -4,10 +4,10 @@ use super::super::contender::Contender;
 use super::super::job::Source;
 use super::super::record::metric;
 use super::super::results::{CONVENTIONAL, SuiteData};
-use super::super::tables::{Sweep, cell, milliseconds, push_refusals};
+use super::super::tables::{Sweep, cell, mean_and_range, milliseconds, push_refusals};
 use super::{COST, FrameSuite};
 use yoro_report::paper::PAPER;
-use yoro_report::stats::{geometric_mean, line_through, mean};
+use yoro_report::stats::{line_through, mean};
 use yoro_report::text::{fixed, short_count};
 use yoro_report::{Axis, Cell, Section, Table};
 
@@ -96,7 +96,7 @@ fn slopes(suite: &SuiteData) -> Table {
             cell(name, slope.map(milliseconds)),
             Cell::plain(fit.map(|(offset, _)| milliseconds(offset)).unwrap_or_default()),
             cell(name, share(slope, base)),
-            cell(name, fixed(geometric_mean(ratios), 3)),
+            cell(name, mean_and_range(ratios)),
             Cell::paper(paper_slope.map(milliseconds)),
             Cell::paper(share(paper_slope, paper_base)),
             Cell::paper(fixed(paper_ratio, 3)),
@@ -104,7 +104,7 @@ fn slopes(suite: &SuiteData) -> Table {
     }
     push_refusals(&mut table, suite);
     table.note = "The paper's slopes are least-squares fits to its nine points. Its “51.40 %” omits the smallest scene; \
-                  the ratio here is the mean of all nine."
+                  the ratio here is the mean of all nine. Ours have the least and the most of the sizes."
         .into();
     table
 }

@@ -14,7 +14,7 @@ use super::super::results::SuiteData;
 use super::super::runner::{Round, Runner, milliseconds};
 use super::super::scenes::LazyObject;
 use super::super::subject::Subject;
-use super::super::tables::{label_table, show_labels};
+use super::super::tables::{label_table, mean_and_range, show_labels};
 use super::super::views::{HEADSET_RATE, Motion, SPREAD};
 use super::foveation::DEGREES;
 use yoro::eyes::{DepthConvention, Eye, EyePair, FoveationLevel, Ndc, Pose, View};
@@ -24,7 +24,6 @@ use yoro_metrics::{Channels, EyeCamera, EyePose, SsimWindow, SubmittedEye, psnr,
 use yoro_render::stereo::{EyeTarget, HoleMethod, Method, MotionTarget, StereoFrame};
 use yoro_render::{DepthImage, DepthReader, PreparedScene};
 use yoro_report::Section;
-use yoro_report::stats::geometric_mean;
 use yoro_report::text::fixed;
 
 /// The ways of making the frame between. The runtime is emulated.
@@ -122,9 +121,9 @@ impl Experiment for HalfRate {
         let contenders = suite.compared(metric::FRAME_MS);
         let mut table = label_table(suite, title, "motion", &contenders, |label, name| {
             let ratios = suite.labelled(label).filter_map(|setting| Some(setting.cost(name)?.median));
-            fixed(geometric_mean(ratios), 2)
+            mean_and_range(ratios)
         });
-        table.note = "What the runtime does is not counted, nor is moving the scene's vertices.".into();
+        table.note = "Medians; their mean over the scenes, the least and the most. What the runtime does is not counted, nor is moving the scene's vertices.".into();
         section.table(table);
         vec![section]
     }
