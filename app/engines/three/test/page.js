@@ -762,6 +762,8 @@ async function special() {
   await look('stencil and left', { renderer: { stencil: true }, options: { dominantEye: 'left' } });
   await look('overridden', { tweak: (scene) => {
     scene.overrideMaterial = new THREE.MeshNormalMaterial();
+    // This material leaves the size of points undefined.
+    scene.remove(scene.children.find(({ isPoints }) => isPoints));
   } });
   await look('transparent canvas', { renderer: { alpha: true, antialias: true }, tweak: (scene) => {
     scene.remove(scene.children.find(({ material }) => material?.uniforms?.turbidity));
