@@ -26,8 +26,7 @@ const PRECISIONS: &str =
 pub fn module() -> anyhow::Result<String> {
     let mut module = format!(
         "// yoro {}, synthesis passes, written from its GLSL by `cargo xtask maintain renew`. Do not edit.\n\
-         // SPDX-License-Identifier: MIT OR Apache-2.0\n\
-         export const precisions = '{PRECISIONS}';\n",
+         // SPDX-License-Identifier: MIT OR Apache-2.0\n",
         env!("CARGO_PKG_VERSION")
     );
     let mut texts = Vec::new();
@@ -44,10 +43,31 @@ pub fn module() -> anyhow::Result<String> {
     }
     inline_constants(&mut texts);
     let names = short_names(texts.iter().map(|(_, text)| text.as_str()));
+    let uniforms = take_uniforms(&mut texts);
+    writeln!(module, "export const declarations = /* glsl */`{PRECISIONS}{uniforms}`;")?;
     for (name, text) in &texts {
-        writeln!(module, "export const {name} = /* glsl */`${{precisions}}\n{}`;", renamed(text, &names))?;
+        let text = with_short_numbers(&renamed(text, &names));
+        writeln!(module, "export const {name} = /* glsl */`${{declarations}}{text}`;")?;
     }
     Ok(module)
+}
+
+/// Takes the uniforms out of the texts, joins the lines of these, and returns the declarations of all uniforms.
+fn take_uniforms(texts: &mut [(&str, String)]) -> String {
+    let mut uniforms: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for (_, text) in texts {
+        let (declared, others): (Vec<_>, Vec<_>) =
+            text.lines().partition(|line| line.starts_with("uniform "));
+        for line in declared {
+            let mut words = words(line).rev().map(str::to_owned);
+            let (name, kind) = words.next().zip(words.next()).unwrap();
+            uniforms.entry(kind).or_default().insert(name);
+        }
+        *text = others.concat();
+    }
+    let declare =
+        |(kind, names)| format!("uniform {kind} {};", Vec::from_iter::<BTreeSet<String>>(names).join(","));
+    uniforms.into_iter().map(declare).collect()
 }
 
 /// Leaves out what is for sources that are parts of their textures, or do not begin at their corners.
@@ -182,6 +202,21 @@ fn renamed(text: &str, names: &BTreeMap<String, String>) -> String {
             [name, &part[word.len()..]].concat()
         })
         .collect()
+}
+
+/// Returns a text with .5 for 0.5, and 1. for 1.0.
+fn with_short_numbers(text: &str) -> String {
+    let is_end = |c: char| !is_word(c) && c != '.';
+    let parts = text.split_inclusive(is_end).map(|part| {
+        let (word, end) = part.split_at(part.trim_end_matches(is_end).len());
+        let whole = word.strip_suffix(".0").filter(|word| word.starts_with(|c: char| c.is_ascii_digit()));
+        match (whole, word.strip_prefix("0.").filter(|digits| !digits.is_empty())) {
+            (Some(whole), _) => format!("{whole}.{end}"),
+            (None, Some(fraction)) => format!(".{fraction}{end}"),
+            (None, None) => part.to_owned(),
+        }
+    });
+    parts.collect()
 }
 
 /// True if a declaration is that of a name: of a function, or of the last word before the value or the end.

@@ -1,17 +1,15 @@
-import {
-  DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, Matrix4, UnsignedInt248Type, WebGLRenderTarget,
-} from 'three';
+import * as THREE from 'three';
 import { asEyes } from './answers.js';
-import { Chooser } from './choice.js';
-import { encode, Encoding } from './encoding.js';
-import { Readback, Timer } from './gpu.js';
-import { Halves } from './halves.js';
+import { createChooser } from './choice.js';
+import { createEncoding, encode } from './encoding.js';
+import { createReadback, createTimer } from './gpu.js';
+import { createHalves } from './halves.js';
 import { levelName, levelsOf } from './levels.js';
-import { Parts } from './parts.js';
-import { Passes } from './passes.js';
-import { aside, once, restoring } from './state.js';
+import { createParts } from './parts.js';
+import { createPasses } from './passes.js';
+import { aside, having, restoring } from './state.js';
 import { troubleOf } from './trouble.js';
-import { viewsOf } from './views.js';
+import { isReversed, viewsOf } from './views.js';
 
 /** Both eyes are rendered once this share of the view is too near, until less than the second share is. */
 const NEAR_SHARES = [0.5, 0.35];
@@ -59,14 +57,14 @@ export class StereoSynthesis {
   /** Why both eyes had to be rendered in the last frame, in a sentence, or null. */
   trouble = null;
 
-  #halves = new Halves();
-  #chooser = new Chooser();
+  #halves;
+  #chooser = createChooser();
   #timer;
   /** Reads what is near. */
   #share;
   #encoding;
   #parts;
-  #between = new Matrix4();
+  #between = new THREE.Matrix4();
   /** What is made for the present kind of target. */
   #made = '';
   /** The targets of the source, or of the wide level and the inset, and that of the wide level's other eye. */
@@ -98,6 +96,7 @@ export class StereoSynthesis {
     this.renderer = renderer;
     for (const name in options) this[name] = options[name] ?? this[name];
     this.samples ??= this.#attributes.antialias ? 4 : 0;
+    this.#halves = createHalves(renderer);
     /** Its `eyeSep` is the eyes' distance on a canvas, its `aspect` that of an eye relative to the camera's. */
     this.stereoCamera = this.#halves.stereoCamera;
     this.stereoCamera.eyeSep = eyeSeparation;
@@ -123,18 +122,15 @@ export class StereoSynthesis {
    */
   render(scene, camera) {
     if (this.renderer.getContext().isContextLost()) return;
-    const { matrixWorldAutoUpdate } = scene;
-    if (matrixWorldAutoUpdate) scene.updateMatrixWorld();
+    if (scene.matrixWorldAutoUpdate) scene.updateMatrixWorld();
     if (camera.parent === null && camera.matrixWorldAutoUpdate) camera.updateMatrixWorld();
-    // The scene is drawn in up to two parts, with the same matrices.
-    scene.matrixWorldAutoUpdate = false;
     this.#isBusy = true;
     try {
-      restoring(this.renderer, () => this.#frame(scene, camera));
+      // The scene is drawn in up to two parts, with the same matrices.
+      having(scene, { matrixWorldAutoUpdate: false }, () => restoring(this.renderer, () => this.#frame(scene, camera)));
     } finally {
       this.#timer.end();
       this.#isBusy = false;
-      scene.matrixWorldAutoUpdate = matrixWorldAutoUpdate;
     }
   }
 
@@ -165,7 +161,7 @@ export class StereoSynthesis {
    */
   eyes(camera) {
     const { xr } = this.renderer;
-    if (!this.#isPresenting) return this.#halves.of(this.renderer, camera);
+    if (!this.#isPresenting) return this.#halves.of(camera);
     if (xr.cameraAutoUpdate) xr.updateCamera(camera);
     return xr.getCamera();
   }
@@ -178,7 +174,7 @@ export class StereoSynthesis {
    */
   view(eyes) {
     const views = this.#find(eyes);
-    return views && { camera: this.#parts.look(eyes.cameras[this.#rendered], views, 0), width: views.size[0], height: views.size[1] };
+    return views && { camera: this.#parts.look(eyes.cameras[this.#rendered], views), width: views.size[0], height: views.size[1] };
   }
 
   /**
@@ -194,15 +190,13 @@ export class StereoSynthesis {
     const { renderer } = this;
     const views = this.#find(eyes);
     if (!views) return false;
-    const passes = this.#given ??= new Passes(renderer, false);
-    passes.assign(this.#rendered);
+    const passes = this.#given ??= createPasses(renderer, false);
+    passes.choose(this.#rendered);
+    aside(renderer, () => passes.prepare(views, { texture: color, depthTexture: depth, samples }));
     restoring(renderer, () => {
-      aside(renderer, () => passes.prepare(views, color, depth, samples > 0));
+      renderer.xr.enabled = false;
       renderer.setRenderTarget(target);
-      once(renderer, () => {
-        renderer.xr.enabled = false;
-        renderer.render(passes.eyes, eyes);
-      });
+      renderer.render(passes.eyes, eyes);
     });
     return true;
   }
@@ -223,13 +217,9 @@ export class StereoSynthesis {
     return this.dominantEye === 'left' ? 0 : 1;
   }
 
-  get #isReversed() {
-    return Boolean(this.renderer.capabilities.reversedDepthBuffer);
-  }
-
   /** What `viewsOf` is told of the renderer. */
   get #limits() {
-    return [this.#isReversed, this.renderer.capabilities.maxTextureSize, this.#between];
+    return [isReversed(this.renderer), this.renderer.capabilities.maxTextureSize, this.#between];
   }
 
   get #attributes() {
@@ -253,16 +243,17 @@ export class StereoSynthesis {
   /** Begins with a new context, or one that was restored. */
   #begin = () => {
     const gl = this.renderer.getContext();
-    this.#timer = new Timer(gl);
-    this.#share = new Readback(gl);
-    this.#encoding = new Encoding(this.renderer);
-    this.#parts = new Parts(this, this.#encoding);
+    this.#timer = createTimer(gl);
+    this.#share = createReadback(gl);
+    this.#encoding = createEncoding(this.renderer);
+    this.#parts = createParts(this, this.#encoding);
     this.#isNear = false;
     this.#chooser.sceneChanged();
   };
 
   #frame(scene, camera) {
     const { renderer } = this;
+    const { info } = renderer;
     const isPresenting = this.#isPresenting;
     const isAuto = this.mode === 'auto';
     const chooser = this.#chooser;
@@ -282,7 +273,9 @@ export class StereoSynthesis {
     const way = isAuto ? chooser.way : WAYS[1];
     if (views && !(isAuto && this.#isNear) && way !== WAYS[0]) {
       this.way = WAYS[1];
-      this.#synthesize(scene, eyes, shown, views, way);
+      // The figures of a frame are those of all its passes.
+      if (info.autoReset) info.reset();
+      having(info, { autoReset: false }, () => this.#synthesize(scene, eyes, shown, views, way));
     } else {
       if (isAuto && views && this.#isNear) this.#lookNear(scene, eyes, views[0]);
       this.#render(scene, shown);
@@ -315,46 +308,32 @@ export class StereoSynthesis {
 
   #synthesize(scene, eyes, shown, views, way) {
     const { renderer } = this;
-    const { info } = renderer;
-    const { autoReset } = info;
     const target = renderer.getRenderTarget();
-    // The figures of a frame are those of all its passes.
-    if (autoReset) info.reset();
-    info.autoReset = false;
-    try {
-      const own = eyes.cameras[this.#rendered], parts = this.#parts, isFoveated = views.length > 1;
-      let isDone = false;
-      while (!isDone) {
-        this.#allocate(target, isFoveated, way === WAYS[3] ? 0 : this.samples);
-        const passes = this.#passes, sources = this.#sources;
-        const [left] = views.map((each, i) => parts.draw(sources[i], each.size, scene, own, each, i));
-        if (parts.isCovering && parts.hasGlass) {
-          this.trouble = MIXED;
-          this.#pause = LOOKS[1];
-          return this.#render(scene, shown);
-        }
-        const isOpen = this.holes === 'rendered' && way === WAYS[1] && parts.canOpen;
-        passes.choose(isOpen, this.#isReversed);
-        passes.assign(this.#rendered);
-        passes.isCovering = parts.isCovering;
-        aside(renderer, () => {
-          [passes.wide ?? passes, passes].slice(0, views.length).forEach((each, i) => {
-            const { texture, depthTexture, samples } = sources[i];
-            each.prepare(views[i], texture, depthTexture, samples > 0);
-          });
-          if (this.mode === 'auto' && this.#frames % LOOKS[0] === 0) this.#count(views[0]);
-          if (!isFoveated) return;
-          this.#wideOther.setSize(...views[0].uniforms.target_size);
-          passes.wide.drawOther(this.#wideOther);
-          passes.compose(views[1], this.#rendered, this.#wideOther);
-        });
-        asEyes(renderer, () => parts.show(passes, scene, shown, own, left, isOpen ? views.at(-1).target : null));
-        // Whether three collects frames is known once a picture is drawn, which is then drawn again.
-        isDone = this.#isBuffered || this.#drawnTo === target;
-        this.#isBuffered ||= !isDone;
+    const own = eyes.cameras[this.#rendered], parts = this.#parts, isFoveated = views.length > 1;
+    let isDone = false;
+    while (!isDone) {
+      this.#allocate(target, isFoveated, way === WAYS[3] ? 0 : this.samples);
+      const passes = this.#passes, sources = this.#sources;
+      const [{ left, isCovering, hasGlass, canOpen }] = views.map((each, i) => parts.draw(sources[i], each.size, scene, own, each, i));
+      if (isCovering && hasGlass) {
+        this.trouble = MIXED;
+        this.#pause = LOOKS[1];
+        return this.#render(scene, shown);
       }
-    } finally {
-      info.autoReset = autoReset;
+      const isOpen = this.holes === 'rendered' && way === WAYS[1] && canOpen;
+      passes.choose(this.#rendered, isCovering, isOpen);
+      aside(renderer, () => {
+        [passes.wide ?? passes, passes].slice(0, views.length).forEach((each, i) => each.prepare(views[i], sources[i]));
+        if (this.mode === 'auto' && this.#frames % LOOKS[0] === 0) this.#count(views[0]);
+        if (!isFoveated) return;
+        this.#wideOther.setSize(...views[0].uniforms.target_size);
+        passes.wide.drawOther(this.#wideOther);
+        passes.compose(views[1], this.#rendered, this.#wideOther);
+      });
+      asEyes(renderer, () => parts.show(passes, scene, shown, own, left, isOpen ? views.at(-1).target : null));
+      // Whether three collects frames is known once a picture is drawn, which is then drawn again.
+      isDone = this.#isBuffered || this.#drawnTo === target;
+      this.#isBuffered ||= !isDone;
     }
   }
 
@@ -408,7 +387,7 @@ export class StereoSynthesis {
       this.#made = made;
       this.#sources = (isFoveated ? [0, 1] : [0]).map(() => this.#target(isLinear));
       if (isFoveated) this.#wideOther = this.#target(isLinear);
-      this.#passes = new Passes(renderer, isLinear, isFoveated ? new Passes(renderer, false) : null);
+      this.#passes = createPasses(renderer, isLinear, isFoveated ? createPasses(renderer, false) : null);
       this.#passes.own.onBeforeRender = () => {
         this.#drawnTo = renderer.getRenderTarget();
       };
@@ -423,28 +402,24 @@ export class StereoSynthesis {
 
   #target(isLinear) {
     const stencilBuffer = this.#attributes.stencil;
-    const target = new WebGLRenderTarget(1, 1, { stencilBuffer, ...(isLinear && { type: HalfFloatType }) });
-    target.depthTexture = new DepthTexture(1, 1, this.#isReversed ? FloatType : undefined);
-    if (stencilBuffer) Object.assign(target.depthTexture, { format: DepthStencilFormat, type: UnsignedInt248Type });
+    const depthTexture = new THREE.DepthTexture(1, 1, isReversed(this.renderer) ? THREE.FloatType : undefined);
+    if (stencilBuffer) Object.assign(depthTexture, { format: THREE.DepthStencilFormat, type: THREE.UnsignedInt248Type });
+    const target = new THREE.WebGLRenderTarget(1, 1, { stencilBuffer, depthTexture, ...(isLinear && { type: THREE.HalfFloatType }) });
     if (!isLinear) encode(target, this.renderer);
     return target;
   }
 
   #release() {
-    for (const target of [...this.#sources, this.#wideOther, this.#small]) {
-      target?.depthTexture.dispose();
-      target?.dispose();
-    }
-    this.#passes?.dispose();
+    for (const each of [...this.#sources, this.#wideOther, this.#small, this.#passes]) each?.dispose();
     this.#sources = [];
     this.#wideOther = this.#small = this.#passes = null;
     this.#made = '';
   }
 
   /** Looks at what is near, to be known some frames later. */
-  #count(views, depth) {
+  #count(views, source) {
     if (this.#share.isWaiting) return;
-    (this.#passes.wide ?? this.#passes).drawNear(views, this.nearLimit, depth);
+    (this.#passes.wide ?? this.#passes).drawNear(views, this.nearLimit, source);
     this.#share.begin(64);
   }
 
@@ -453,6 +428,6 @@ export class StereoSynthesis {
     if (this.#frames % LOOKS[1] !== 0 || !this.#passes) return;
     const small = this.#small ??= this.#target(false);
     this.#parts.draw(small, [64, 64], scene, eyes.cameras[this.#rendered], views);
-    aside(this.renderer, () => this.#count(views, small.depthTexture));
+    aside(this.renderer, () => this.#count(views, small));
   }
 }

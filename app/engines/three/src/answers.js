@@ -1,15 +1,6 @@
 // What the renderer answers while something is drawn: materials ask it for its size, to draw what is measured in pixels.
 
-/** Has the renderer give other answers. */
-function answering(renderer, answers, draw) {
-  const own = {};
-  for (const name in answers) own[name] = renderer[name];
-  try {
-    return draw(Object.assign(renderer, answers));
-  } finally {
-    Object.assign(renderer, own);
-  }
-}
+import { having } from './state.js';
 
 /**
  * Draws both eyes. On a canvas or a target, the viewport is that of the eye which is drawn, as three's `StereoEffect` has it;
@@ -24,7 +15,7 @@ export function asEyes(renderer, draw, viewport) {
   if (xr.enabled && xr.isPresenting) return draw();
   const ratio = renderer.getRenderTarget() ? 1 : renderer.getPixelRatio();
   const getViewport = (to) => (viewport ? to.copy(viewport) : renderer.getCurrentViewport(to)).divideScalar(ratio);
-  return answering(renderer, { getViewport }, draw);
+  return having(renderer, { getViewport }, draw);
 }
 
 /**
@@ -40,5 +31,5 @@ export function asSource(renderer, { size, whole }, eye, draw) {
     return (to) => get.call(renderer, to).set(Math.round(to.x * x), Math.round(to.y * y));
   };
   const getViewport = (to) => to.set(0, 0, eye.z * x, eye.w * y);
-  return answering(renderer, { getViewport, getSize: scaled('getSize'), getDrawingBufferSize: scaled('getDrawingBufferSize') }, draw);
+  return having(renderer, { getViewport, getSize: scaled('getSize'), getDrawingBufferSize: scaled('getDrawingBufferSize') }, draw);
 }

@@ -37,216 +37,211 @@ function middle(times = []) {
   return half.reduce((sum, time) => sum + time) / half.length;
 }
 
-/** Measures ways in turns, and chooses the cheapest one, or the best one that holds the display's rate. */
-export class Chooser {
+/** Makes what measures ways in turns, and chooses the cheapest one, or the best one that holds the display's rate. */
+export function createChooser() {
   /** From the best one on. */
-  #ways = ['rendered', 'synthesized'];
+  let ways = ['rendered', 'synthesized'];
   /** True if each way is better than the next one; otherwise the first two are equally good. */
-  #isRanked = false;
-  #phase = SETTLES;
+  let isRanked = false;
+  let phase;
   /** When the phase began; null if it has not. */
-  #begin = null;
+  let begin;
   /** 0 while nothing is measured. */
-  #turn = 0;
-  #turnBegin = 0;
+  let turn;
+  let turnBegin;
   /** Frames of the turn, or frames that are still waited for. */
-  #count = 0;
-  #until = 0;
+  let count;
+  let until;
   /** What the times of the last frames count for. */
-  #tags = [];
-  #last = null;
-  #refresh = 0;
+  let tags = [];
+  let last;
+  let refresh;
   /** By way, and of what is watched. */
-  #costs = {};
-  #intervals = {};
-  #watchBegin = null;
-  #first = null;
+  let costs = {};
+  let intervals = {};
+  let watchBegin;
+  let first;
   /** The time before which a way that misses the rate is not measured again. */
-  #missedRest = MISSED_REST;
-  #way = 'synthesized';
-  #choice = null;
+  let missedRest;
+  let choice = { way: 'synthesized' };
 
-  constructor() {
-    this.sceneChanged();
-  }
+  const choose = (way, reason, costs = null) => {
+    choice = { way, reason, costs };
+  };
 
-  /**
-   * Measures again: for another scene, place, resolution or other ways.
-   *
-   * @param {string[]} [ways] - From the best one on.
-   * @param {boolean} [isRanked] - True if the first one is better than the second one, and not only dearer.
-   */
-  sceneChanged(ways = this.#ways, isRanked = this.#isRanked) {
-    this.#ways = ways;
-    this.#isRanked = isRanked;
-    if (!ways.includes(this.#way)) this.#way = ways[1];
-    this.#phase = SETTLES;
-    this.#turn = 0;
-    this.#missedRest = MISSED_REST;
-    this.#begin = this.#last = null;
-    this.#choose(this.#way, 'unmeasured');
-  }
+  /** True unless pictures differ and too many frames of a way are late, which a display's queue hides from most of them. */
+  const isPunctual = (way) => {
+    const times = intervals[way];
+    return ways.length < 3 || times.filter((time) => time * refresh > 1500).length <= MAX_LATE * times.length;
+  };
 
-  /** The last choice: way, reason and, if they could be compared, the times of all ways. */
-  get choice() {
-    return this.#choice;
-  }
-
-  /** The way to make the next frame. */
-  get way() {
-    const ways = this.#ways;
-    return ways[(ways.indexOf(this.#way) + this.#turn) % ways.length];
-  }
-
-  /**
-   * Counts a frame.
-   *
-   * @param {number} now - The time.
-   * @param {number} refresh - The display's refreshes per second, or 0 if unknown.
-   * @param {string|null} rendered - How the frame was made, or null if it counts for no way.
-   * @param {[number, number]|null} cost - How many frames ago was a frame whose GPU time has become known, and that time.
-   */
-  endFrame(now, refresh, rendered, cost) {
-    const interval = this.#last === null ? null : now - this.#last;
-    this.#last = now;
-    const tags = this.#tags, phase = this.#phase;
-    const isPause = interval > PAUSE;
-    let tag = null;
-    if (!isPause && rendered === this.way) {
-      if (phase === MEASURES && this.#count >= UNCOUNTED_FRAMES) tag = rendered;
-      else if (phase === RESTS) tag = WATCHED;
-    }
-    tags.push(tag);
-    if (tags.length > REMEMBERED) tags.shift();
-    if (isPause) {
-      if (phase === RESTS) return this.#watch();
-      this.#phase = SETTLES;
-      this.#turn = 0;
-      this.#begin = now;
-      return;
-    }
-    // Without a display's pace, the time between frames says nothing about the cost of those that are watched.
-    if (interval !== null && tag !== null && (tag !== WATCHED || refresh > 0)) {
-      (this.#intervals[tag] ??= []).push(interval);
-      this.#refresh = refresh;
-    }
-    const [ago, ms] = cost ?? [];
-    const of = tags.at(-1 - ago);
-    if (of && ms > 0 && ms < Infinity) (this.#costs[of] ??= []).push(ms);
-    this.#proceed(now);
-  }
-
-  /** Begins the next turn or phase, if it is time. */
-  #proceed(now) {
-    if (this.#phase === SETTLES) {
-      this.#begin ??= now;
-      if (now - this.#begin >= SETTLING) this.#measure(now);
-    } else if (this.#phase === MEASURES) {
-      const n = this.#ways.length;
-      if (++this.#count < TURN_FRAMES || now - this.#turnBegin < TURN[Number(n > 2)]) return;
-      this.#turnBegin = now;
-      this.#count = 0;
-      if (++this.#turn < TURNS || this.#turn % n > 0 || now - this.#begin < MEASURING) return;
-      // Of pictures that differ, the last one stays until one is chosen.
-      this.#turn = n > 2 ? this.#turn - 1 : 0;
-      this.#phase = COLLECTS;
-      this.#count = LATE_FRAMES;
-      this.#collect(now);
-    } else if (this.#phase === COLLECTS) {
-      this.#collect(now);
-    } else if (this.#hasChanged(now) || now >= this.#until) {
-      this.#measure(now);
-    }
-  }
-
-  #measure(now) {
-    this.#costs = {};
-    this.#intervals = {};
-    this.#tags = [];
-    this.#phase = MEASURES;
-    this.#begin = this.#turnBegin = now;
-    this.#turn = this.#count = this.#refresh = 0;
-  }
-
-  /** Chooses, once the times of all frames are known or the wait for them is over. */
-  #collect(now) {
-    const isMissing = (way) => !(this.#costs[way]?.length >= this.#intervals[way]?.length);
-    if (this.#count-- > 0 && this.#ways.some(isMissing)) return;
-    const took = now - this.#begin;
-    this.#compare();
-    const { costs, reason } = this.#choice;
-    // Pictures that differ are seen.
-    let rest = this.#ways.length > 2 || reason === 'both hold the rate' ? LONGEST_REST : LEAST_REST;
-    if (costs) {
-      const times = Object.values(costs);
-      const more = (Math.max(...times) / Math.min(...times) - 1) / 2;
-      rest = Math.min(Math.max(took * more / OVERHEAD, rest), LONGEST_REST);
-    }
-    this.#watch();
-    this.#first = null;
-    this.#turn = 0;
-    this.#phase = RESTS;
-    this.#begin = now;
-    this.#until = now + rest;
-  }
-
-  #compare() {
-    const ways = this.#ways, refresh = this.#refresh;
+  const compare = () => {
     const ofAll = (times) => {
       const all = {};
       for (const way of ways) all[way] = middle(times[way]);
       return ways.some((way) => all[way] === null) ? null : all;
     };
-    const known = ofAll(this.#costs), intervals = ofAll(this.#intervals);
-    if (!intervals) return this.#choose(this.#way, 'incomparable');
-    const costs = known ?? intervals, isNew = this.#choice.reason === 'unmeasured';
-    const rank = (way) => Math.max(ways.indexOf(way), Number(!this.#isRanked));
-    const holding = ways.filter((way) => refresh > 0 && intervals[way] * refresh <= 1000 * MAX_REFRESHES && this.#isPunctual(way));
-    const roomy = holding.filter((way) => ways.length < 3 || !known || known[way] * refresh <= 1000 * ROOM[Number(way === this.#way && !isNew)]);
+    const current = choice.way;
+    const known = ofAll(costs), paces = ofAll(intervals);
+    if (!paces) return choose(current, 'incomparable');
+    const compared = known ?? paces, isNew = choice.reason === 'unmeasured';
+    const rank = (way) => Math.max(ways.indexOf(way), Number(!isRanked));
+    const holding = ways.filter((way) => refresh > 0 && paces[way] * refresh <= 1000 * MAX_REFRESHES && isPunctual(way));
+    const roomy = holding.filter((way) => ways.length < 3 || !known || known[way] * refresh <= 1000 * ROOM[Number(way === current && !isNew)]);
     const best = roomy.filter((way) => rank(way) === rank(roomy[0]));
-    if (best.length === 1) return this.#choose(best[0], 'holds the rate', costs);
+    if (best.length === 1) return choose(best[0], 'holds the rate', compared);
     const good = best.length > 0 ? best : holding;
     // Without samples only to hold a rate.
     const open = good.length > 0 ? good : ways.filter((way) => refresh > 0 || way !== 'aliased');
-    const cheapest = open.reduce((a, b) => (costs[b] < costs[a] ? b : a));
-    const least = costs[cheapest];
-    const alike = open.filter((each) => good.length > 0 || costs[each] - least < SAME_RATE * least);
-    const way = [this.#way, ...(known ? open : alike)].find((each) => open.includes(each));
-    if (!known && alike.length > 1) return this.#choose(alike.includes(way) ? way : alike[0], 'both hold the rate');
-    const isCheaper = least < costs[way] * (isNew ? 1 : SWITCH_BELOW);
-    return this.#choose(isCheaper ? cheapest : way, isCheaper || costs[way] === least ? 'cheaper' : 'similar', costs);
-  }
-
-  #choose(way, reason, costs = null) {
-    this.#way = way;
-    this.#choice = { way, reason, costs };
-  }
+    const cheapest = open.reduce((a, b) => (compared[b] < compared[a] ? b : a));
+    const least = compared[cheapest];
+    const alike = open.filter((each) => good.length > 0 || compared[each] - least < SAME_RATE * least);
+    const way = [current, ...(known ? open : alike)].find((each) => open.includes(each));
+    if (!known && alike.length > 1) return choose(alike.includes(way) ? way : alike[0], 'both hold the rate');
+    const isCheaper = least < compared[way] * (isNew ? 1 : SWITCH_BELOW);
+    choose(isCheaper ? cheapest : way, isCheaper || compared[way] === least ? 'cheaper' : 'similar', compared);
+  };
 
   /** Begins a window of frames that are watched. */
-  #watch() {
-    this.#watchBegin = null;
-    for (const all of [this.#costs, this.#intervals]) all[WATCHED] = [];
-  }
-
-  /** True unless pictures differ and too many frames of a way are late, which a display's queue hides from most of them. */
-  #isPunctual(way) {
-    const times = this.#intervals[way];
-    return this.#ways.length < 3 || times.filter((time) => time * this.#refresh > 1500).length <= MAX_LATE * times.length;
-  }
+  const watch = () => {
+    watchBegin = null;
+    costs[WATCHED] = [];
+    intervals[WATCHED] = [];
+  };
 
   /** True if a window ends now whose times differ from those of the first window, or that misses the rate. */
-  #hasChanged(now) {
-    this.#watchBegin ??= now;
-    if (now - this.#watchBegin < WATCH) return false;
-    const rested = now - this.#begin;
-    const times = [this.#costs, this.#intervals].map((all) => middle(all[WATCHED]));
-    const isLate = this.#choice.reason === 'holds the rate' && this.#way !== this.#ways.at(-1) && !this.#isPunctual(WATCHED);
-    this.#watch();
-    if (isLate && rested >= this.#missedRest) {
-      this.#missedRest *= 2;
+  const hasChanged = (now) => {
+    watchBegin ??= now;
+    if (now - watchBegin < WATCH) return false;
+    const rested = now - begin;
+    const times = [costs, intervals].map((all) => middle(all[WATCHED]));
+    const isLate = choice.reason === 'holds the rate' && choice.way !== ways.at(-1) && !isPunctual(WATCHED);
+    watch();
+    if (isLate && rested >= missedRest) {
+      missedRest *= 2;
       return true;
     }
-    const first = this.#first ??= times;
+    first ??= times;
     return rested >= SHORTEST_REST && times.some((time, i) => time !== null && first[i] !== null && (time > first[i] * DRIFT || time * DRIFT < first[i]));
-  }
+  };
+
+  const measure = (now) => {
+    costs = {};
+    intervals = {};
+    tags = [];
+    phase = MEASURES;
+    begin = turnBegin = now;
+    turn = count = refresh = 0;
+  };
+
+  /** Chooses, once the times of all frames are known or the wait for them is over. */
+  const collect = (now) => {
+    const isMissing = (way) => !(costs[way]?.length >= intervals[way]?.length);
+    if (count-- > 0 && ways.some(isMissing)) return;
+    const took = now - begin;
+    compare();
+    // Pictures that differ are seen.
+    let rest = ways.length > 2 || choice.reason === 'both hold the rate' ? LONGEST_REST : LEAST_REST;
+    if (choice.costs) {
+      const times = Object.values(choice.costs);
+      const more = (Math.max(...times) / Math.min(...times) - 1) / 2;
+      rest = Math.min(Math.max(took * more / OVERHEAD, rest), LONGEST_REST);
+    }
+    watch();
+    first = null;
+    turn = 0;
+    phase = RESTS;
+    begin = now;
+    until = now + rest;
+  };
+
+  /** Begins the next turn or phase, if it is time. */
+  const proceed = (now) => {
+    if (phase === SETTLES) {
+      begin ??= now;
+      if (now - begin >= SETTLING) measure(now);
+    } else if (phase === MEASURES) {
+      const n = ways.length;
+      if (++count < TURN_FRAMES || now - turnBegin < TURN[Number(n > 2)]) return;
+      turnBegin = now;
+      count = 0;
+      if (++turn < TURNS || turn % n > 0 || now - begin < MEASURING) return;
+      // Of pictures that differ, the last one stays until one is chosen.
+      turn = n > 2 ? turn - 1 : 0;
+      phase = COLLECTS;
+      count = LATE_FRAMES;
+      collect(now);
+    } else if (phase === COLLECTS) {
+      collect(now);
+    } else if (hasChanged(now) || now >= until) {
+      measure(now);
+    }
+  };
+
+  const chooser = {
+    /** The last choice: way, reason and, if they could be compared, the times of all ways. */
+    get choice() {
+      return choice;
+    },
+
+    /** The way to make the next frame. */
+    get way() {
+      return ways[(ways.indexOf(choice.way) + turn) % ways.length];
+    },
+
+    /**
+     * Measures again: for another scene, place, resolution or other ways.
+     *
+     * @param {string[]} [newWays] - From the best one on.
+     * @param {boolean} [areRanked] - True if the first one is better than the second one, and not only dearer.
+     */
+    sceneChanged(newWays = ways, areRanked = isRanked) {
+      ways = newWays;
+      isRanked = areRanked;
+      phase = SETTLES;
+      turn = 0;
+      missedRest = MISSED_REST;
+      begin = last = null;
+      choose(ways.includes(choice.way) ? choice.way : ways[1], 'unmeasured');
+    },
+
+    /**
+     * Counts a frame.
+     *
+     * @param {number} now - The time.
+     * @param {number} rate - The display's refreshes per second, or 0 if unknown.
+     * @param {string|null} rendered - How the frame was made, or null if it counts for no way.
+     * @param {[number, number]|null} cost - How many frames ago was a frame whose GPU time has become known, and that time.
+     */
+    endFrame(now, rate, rendered, cost) {
+      const interval = last === null ? null : now - last;
+      last = now;
+      const isPause = interval > PAUSE;
+      let tag = null;
+      if (!isPause && rendered === chooser.way) {
+        if (phase === MEASURES && count >= UNCOUNTED_FRAMES) tag = rendered;
+        else if (phase === RESTS) tag = WATCHED;
+      }
+      tags.push(tag);
+      if (tags.length > REMEMBERED) tags.shift();
+      if (isPause) {
+        if (phase === RESTS) return watch();
+        phase = SETTLES;
+        turn = 0;
+        begin = now;
+        return;
+      }
+      // Without a display's pace, the time between frames says nothing about the cost of those that are watched.
+      if (interval !== null && tag !== null && (tag !== WATCHED || rate > 0)) {
+        (intervals[tag] ??= []).push(interval);
+        refresh = rate;
+      }
+      const [ago, ms] = cost ?? [];
+      const of = tags.at(-1 - ago);
+      if (of && ms > 0 && ms < Infinity) (costs[of] ??= []).push(ms);
+      proceed(now);
+    },
+  };
+  chooser.sceneChanged();
+  return chooser;
 }

@@ -1,51 +1,41 @@
 // The eyes on the halves of a canvas or render target.
 
-import { ArrayCamera, StereoCamera, Vector2, Vector4 } from 'three';
+import * as THREE from 'three';
 import { EYE_LAYERS } from './parts.js';
+import { isReversed } from './views.js';
 
-export class Halves {
+/** @param {THREE.WebGLRenderer} renderer */
+export function createHalves(renderer) {
   /** Three's own computation of both eyes. */
-  stereoCamera = new StereoCamera();
-  #pair;
-
-  constructor() {
-    const { stereoCamera } = this;
-    const eyes = [stereoCamera.cameraL, stereoCamera.cameraR];
-    this.#pair = new ArrayCamera(eyes);
-    for (const eye of eyes) eye.viewport = new Vector4();
-    this.#pair.matrixAutoUpdate = this.#pair.matrixWorldAutoUpdate = false;
-    stereoCamera.aspect = 0.5;
-  }
+  const stereoCamera = new THREE.StereoCamera();
+  stereoCamera.aspect = 0.5;
+  const { cameraL, cameraR } = stereoCamera;
+  const pair = new THREE.ArrayCamera([cameraL, cameraR]);
+  pair.matrixAutoUpdate = pair.matrixWorldAutoUpdate = false;
+  for (const eye of pair.cameras) eye.viewport = new THREE.Vector4();
 
   /**
    * Returns both eyes of a camera.
    *
-   * @param {import('three').WebGLRenderer} renderer
-   * @param {import('three').Camera} camera
-   * @return {import('three').ArrayCamera}
+   * @param {THREE.Camera} camera
+   * @return {THREE.ArrayCamera}
    */
-  of(renderer, camera) {
-    const pair = this.#pair, all = [pair, ...pair.cameras];
-    const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(new Vector2());
-    const half = Math.floor(width / 2);
-    if (renderer.capabilities.reversedDepthBuffer) {
+  const of = (camera) => {
+    const { near, far, layers, matrixWorld } = camera;
+    const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(new THREE.Vector2());
+    const half = Math.floor(width / 2), _reversedDepth = isReversed(renderer);
+    if (_reversedDepth && !camera.reversedDepth) {
       // The renderer would do this later, and change the eyes' matrices.
-      if (!camera.reversedDepth) {
-        camera._reversedDepth = true;
-        camera.updateProjectionMatrix();
-      }
-      for (const each of all) each._reversedDepth = true;
+      camera._reversedDepth = true;
+      camera.updateProjectionMatrix();
     }
-    this.stereoCamera.update(camera);
-    for (const each of all) {
-      each.near = camera.near;
-      each.far = camera.far;
-    }
-    pair.matrixWorld.copy(camera.matrixWorld);
-    pair.matrixWorldInverse.copy(pair.matrixWorld).invert();
+    stereoCamera.update(camera);
+    for (const each of [pair, cameraL, cameraR]) Object.assign(each, { near, far, _reversedDepth });
+    pair.matrixWorld.copy(matrixWorld);
+    pair.matrixWorldInverse.copy(matrixWorld).invert();
     pair.projectionMatrix.copy(camera.projectionMatrix);
     pair.projectionMatrixInverse.copy(camera.projectionMatrixInverse);
-    pair.layers.mask = camera.layers.mask | EYE_LAYERS;
+    pair.layers.mask = layers.mask | EYE_LAYERS;
     pair.cameras.forEach((eye, i) => {
       eye.updateMatrixWorld();
       eye.projectionMatrixInverse.copy(eye.projectionMatrix).invert();
@@ -53,5 +43,7 @@ export class Halves {
       eye.layers.mask = pair.layers.mask & ~(0b100 >> i);
     });
     return pair;
-  }
+  };
+
+  return { stereoCamera, of };
 }

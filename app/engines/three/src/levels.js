@@ -1,6 +1,6 @@
 // What is rendered at which density: the laws of `yoro::eyes::foveation` of the library, for three's cameras.
 
-import { Matrix4, Sphere, Vector3 } from 'three';
+import * as THREE from 'three';
 import { project, tangents, viewsOf } from './views.js';
 
 /** The angle in degrees around the gaze that has all pixels, and pixels along each axis for each of an eye's beyond it. */
@@ -34,7 +34,7 @@ const BORDER = 3;
  *
  * @param {Object[]} cameras - As of `viewsOf`.
  * @param {string} name - The level's.
- * @param {Vector3|null} gaze - Where the eyes look, as a direction in the world; null for straight ahead.
+ * @param {THREE.Vector3|null} gaze - Where the eyes look, as a direction in the world; null for straight ahead.
  */
 export function levelsOf(cameras, rendered, name, gaze, guardBand, zeroToOne, largest, between) {
   const level = LEVELS[name];
@@ -45,8 +45,8 @@ export function levelsOf(cameras, rendered, name, gaze, guardBand, zeroToOne, la
   const frusta = cameras.map(({ projectionMatrix }) => tangents(projectionMatrix));
   const lows = frusta.map((frustum) => frustum.map(([low]) => low));
   const pixel = frusta[rendered].map(([low, high], i) => (high - low) / shown[i]);
-  const toEye = new Matrix4().copy(own.matrixWorld).invert();
-  const { x, y, z } = gaze ? new Vector3().copy(gaze).transformDirection(toEye) : { x: 0, y: 0, z: -1 };
+  const toEye = new THREE.Matrix4().copy(own.matrixWorld).invert();
+  const { x, y, z } = gaze ? new THREE.Vector3().copy(gaze).transformDirection(toEye) : { x: 0, y: 0, z: -1 };
   // The inset's corners in both eyes. It stays within what both see.
   const corners = [[], []];
   const size = [x, y].map((aside, i) => {
@@ -67,7 +67,7 @@ export function levelsOf(cameras, rendered, name, gaze, guardBand, zeroToOne, la
   if (Math.min(...size) < 1 || wideSize[0] * wideSize[1] + size[0] * size[1] >= shown[0] * shown[1]) return null;
 
   const part = (eye, frustum, x, y, [z, w]) => ({
-    matrixWorld: cameras[eye].matrixWorld, viewport: { x, y, z, w }, projectionMatrix: project(new Matrix4().copy(cameras[eye].projectionMatrix), frustum),
+    matrixWorld: cameras[eye].matrixWorld, viewport: { x, y, z, w }, projectionMatrix: project(new THREE.Matrix4().copy(cameras[eye].projectionMatrix), frustum),
   });
   const insets = eyes.map((eye) => axes.map((i) => [0, size[i]].map((more) => lows[eye][i] + (corners[eye][i] + more) * pixel[i])));
   const wide = viewsOf(eyes.map((eye) => part(eye, wideFrusta[eye], 0, 0, wideSize)), rendered, guardBand, zeroToOne, largest, between);
@@ -89,7 +89,7 @@ export function levelsOf(cameras, rendered, name, gaze, guardBand, zeroToOne, la
     };
   });
   // What lies within the inset in both eyes, and some pixels from its border, is not seen in the wide level.
-  const apart = Math.abs(between.elements[12]), sphere = new Sphere();
+  const apart = Math.abs(between.elements[12]), sphere = new THREE.Sphere();
   wide.hides = (object) => {
     const bounds = object.boundingSphere ?? object.geometry?.boundingSphere;
     if (!object.isMesh || !object.frustumCulled || !bounds) return false;

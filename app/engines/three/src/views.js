@@ -7,6 +7,9 @@ const MAX_MOVEMENT = 4095;
 /** Columns and rows of a tile. */
 const TILE = [16, 8];
 
+/** True if the renderer's depth is 1 at the near plane, and not 0. */
+export const isReversed = ({ capabilities }) => Boolean(capabilities.reversedDepthBuffer);
+
 /** @param {number} pixels */
 const roundedUp = (pixels) => Math.max(Math.ceil(pixels - 1e-3), 0);
 

@@ -12,7 +12,7 @@ import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { StereoSynthesis } from 'yoro-three';
 import { build, names } from '../examples/scenes.js';
-import { Chooser } from '../src/choice.js';
+import { createChooser } from '../src/choice.js';
 import { levelName } from '../src/levels.js';
 import { viewsOf } from '../src/views.js';
 import { psnr, ssim } from './metrics.js';
@@ -704,7 +704,7 @@ function framebufferOf(renderer, { readBuffer }) {
 
 /** The chooser on a device in virtual time: which way it takes, how often it changes, and how often it measures. */
 function choose({ gpu, cpu = [1, 1, 1], ways = ['rendered', 'synthesized'], isRanked = false, late = 4, refresh = 60, timed = true, seconds = 10, noise = 0 }) {
-  const chooser = new Chooser();
+  const chooser = createChooser();
   chooser.sceneChanged(ways, isRanked);
   let now = 5000, changes = 0, seed = 7, dear = 0, last = chooser.way, since = now, shortest = Infinity;
   const pending = [];
@@ -762,6 +762,8 @@ async function special() {
   await look('stencil and left', { renderer: { stencil: true }, options: { dominantEye: 'left' } });
   await look('overridden', { tweak: (scene) => {
     scene.overrideMaterial = new THREE.MeshNormalMaterial();
+    // This material leaves the size of points undefined.
+    scene.remove(scene.children.find(({ isPoints }) => isPoints));
   } });
   await look('transparent canvas', { renderer: { alpha: true, antialias: true }, tweak: (scene) => {
     scene.remove(scene.children.find(({ material }) => material?.uniforms?.turbidity));
