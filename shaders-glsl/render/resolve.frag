@@ -1,5 +1,5 @@
 // Averages the samples of a pixel and takes their nearest depth, which is reversed or not. With INK outlines are drawn
-// first, in each sample: a sample is compared with the same sample of its neighbours. HOLES goes with one sample.
+// first, in each sample: a sample is compared with the same sample of its neighbours.
 #include "include/color.glsl"
 #include "include/hole_bloom.glsl"
 
@@ -51,6 +51,15 @@ vec4 sample_color(ivec2 p, float depth) {
     return color;
 }
 
+#ifdef HOLES
+bool is_hole(ivec2 p) {
+#if SAMPLES > 1
+    at_sample = 0;
+#endif
+    return !HAS_INK(TEXEL(color_map, p));
+}
+#endif
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy) - view_origin;
 #if SAMPLES > 1
@@ -68,7 +77,7 @@ void main() {
 #endif
 #ifdef HOLES
     // Light spreads over outlines, too.
-    if (!HAS_INK(TEXEL(color_map, p))) {
+    if (is_hole(p)) {
         out_color.rgb = with_view_bloom(out_color.rgb, nearer * nearest);
         out_color.a = luma(out_color.rgb);
     }

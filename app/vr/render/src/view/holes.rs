@@ -5,6 +5,7 @@ use std::rc::Rc;
 use glam::{Vec2, Vec4};
 
 use super::cluster::Culler;
+use super::depth::DepthResolve;
 use super::geometry::{Surfaces, Variant};
 use super::layout::Layout;
 use super::lit::LitScene;
@@ -14,7 +15,7 @@ use super::targets::Targets;
 use yoro::eyes::{View, Warp};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Image, MultisampleTarget, Program, RasterState,
-    RenderTarget, ShaderSource, StencilTest, Texture,
+    RenderTarget, ShaderSource, StencilTest,
 };
 
 /// Depth, with the stencil that tells holes: 0 in a hole, 1 elsewhere.
@@ -35,7 +36,8 @@ impl Renderer {
             self.prepare_variant(scene, Variant { holes: true, ..Variant::plain(samples) })?;
         }
         if self.ink {
-            self.prepare_resolve(InkedHoles::RESOLVE)?;
+            let samples = self.inked_samples();
+            self.prepare_resolve(Resolve { samples, ink: true, depth: true, holes: true, layer: false })?;
         }
         Ok(())
     }
@@ -43,6 +45,11 @@ impl Renderer {
     /// True if outlines are drawn in holes, too, by [`Renderer::ink_holes`].
     pub(crate) fn inks_holes(&self) -> bool {
         self.ink
+    }
+
+    /// Returns the number of samples of [`InkedHoles`].
+    fn inked_samples(&self) -> u32 {
+        if self.depth_resolve == DepthResolve::Samples { self.settings.msaa } else { 1 }
     }
 
     /// Draws opaque surfaces and sky in the holes of an eye that was synthesized into `to`, which has this many samples in
@@ -87,7 +94,7 @@ impl Renderer {
             .set("view_texel", 1.0 / size);
     }
 
-    /// Draws an eye into `to`, with outlines and bloom in its holes, and with its depth.
+    /// Averages an eye in its own samples into `to`, with outlines and bloom in its holes, and with its nearest depth.
     pub(crate) fn ink_holes(
         &self,
         from: &InkedHoles,
@@ -96,63 +103,74 @@ impl Renderer {
         to: &Destination,
         source: &HoleSource,
     ) {
-        let Some((_, program)) = self.resolve.iter().find(|(made, _)| *made == InkedHoles::RESOLVE) else {
-            return;
-        };
-        let [color, depth] = [from.average.color(0), from.average.depth()];
-        let pass = self.gl.pass("outlines").read("color_map", color).read("depth_map", depth);
+        let variant = Resolve { samples: from.samples, ink: true, depth: true, holes: true, layer: false };
+        let Some((_, program)) = self.resolve.iter().find(|(made, _)| *made == variant) else { return };
+        let [color, nearest] = [Format::Rgba8, Format::Depth32F].map(|format| Image {
+            format,
+            size: view.size,
+            samples: from.samples,
+        });
+        let pass = self.gl.pass("resolve").read("color_map", color).read("depth_map", nearest);
         pass.in_tile([Format::Rgba8, MARKED_DEPTH].map(|format| to.image(format))).run(|| {
             self.gl.overwrite(to, 1, true);
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
-            program.bind().texture_of("color_map", 0, color).texture_of("depth_map", 1, depth);
+            from.bind_textures(program.bind());
             self.set_hole_bloom(program, source);
             self.draw_resolve(program, Layout::Single, view, detail, None);
         });
     }
 }
 
-/// An eye whose holes are drawn before their outlines, which compare pixels with their neighbours. Alpha is the material in
-/// holes, and 1 where the eye was synthesized with outlines. Samples are averaged first: outlines of single samples, as
-/// those of whole views are, would store all samples of an eye for a few pixels.
+/// The samples of an eye whose holes are drawn before their outlines, which compare samples with their neighbours. Alpha is
+/// the material in holes, and 1 where the eye was synthesized with outlines.
 pub(crate) struct InkedHoles {
     gl: Rc<Context>,
-    /// The samples, if a pixel has several.
-    samples: Option<MultisampleTarget>,
-    /// The average colour, and the depth of one sample.
-    average: RenderTarget,
+    samples: u32,
+    images: Images,
     /// Fills the alpha of pixels with some stencil.
     fill: Program,
 }
 
-impl InkedHoles {
-    const RESOLVE: Resolve = Resolve { samples: 1, ink: true, depth: true, holes: true, layer: false };
+enum Images {
+    One(RenderTarget),
+    Several(MultisampleTarget),
+}
 
-    /// Makes images of one pixel, to be fitted to each view.
+impl InkedHoles {
+    /// Makes samples of one pixel, to be fitted to each view.
     pub(crate) fn new(renderer: &Renderer) -> Result<InkedHoles, GlError> {
-        let (gl, samples) = (&renderer.gl, renderer.settings.msaa);
-        let colors = &[Format::Rgba8];
-        let several = || MultisampleTarget::new(gl, [1, 1], samples, colors, MARKED_DEPTH, false);
-        Ok(InkedHoles {
-            gl: gl.clone(),
-            samples: (samples > 1).then(several).transpose()?,
-            average: RenderTarget::new(gl, [1, 1], &[(colors[0], Filter::Nearest)], Some(MARKED_DEPTH))?,
-            fill: Program::new(gl, ShaderSource::Screen("render/fill.frag"), &[])?,
-        })
+        let (gl, samples) = (&renderer.gl, renderer.inked_samples());
+        let images = if samples == 1 {
+            let color = (Format::Rgba8, Filter::Nearest);
+            Images::One(RenderTarget::new(gl, [1, 1], &[color], Some(MARKED_DEPTH))?)
+        } else {
+            let colors = &[Format::Rgba8];
+            Images::Several(MultisampleTarget::new(gl, [1, 1], samples, colors, MARKED_DEPTH, true)?)
+        };
+        let fill = Program::new(gl, ShaderSource::Screen("render/fill.frag"), &[])?;
+        Ok(InkedHoles { gl: gl.clone(), samples, images, fill })
     }
 
-    /// Fits the images to a view, and returns the place to synthesize into, and the number of samples of a pixel.
+    /// Fits the samples to a view, and returns the place to synthesize into, and the number of samples of a pixel.
     pub(crate) fn fit(&mut self, size: [u32; 2]) -> Result<(Destination, u32), GlError> {
-        self.average.resize(size)?;
-        let Some(samples) = &mut self.samples else { return Ok((Destination::whole(&self.average), 1)) };
-        samples.resize(size)?;
-        Ok((samples.part(size), samples.samples()))
+        let place = match &mut self.images {
+            Images::One(image) => {
+                image.resize(size)?;
+                Destination::whole(image)
+            }
+            Images::Several(samples) => {
+                samples.resize(size)?;
+                samples.part(size)
+            }
+        };
+        Ok((place, self.samples))
     }
 
     /// Tells holes from the rest by alpha, which a shader can read, once an eye is synthesized into `to`.
     pub(crate) fn mark(&self, to: &Destination) {
-        let samples = self.samples.as_ref().map_or(1, MultisampleTarget::samples);
-        let image = |format| Image { samples, ..to.image(format) };
-        self.gl.pass("mark").in_tile([Format::Rgba8, MARKED_DEPTH].map(image)).run(|| {
+        // The eye was synthesized into the same tiles, and its holes are drawn in them. Then they are stored once.
+        let image = |format| Image { samples: self.samples, ..to.image(format) };
+        self.gl.pass("mark").store([Format::Rgba8, Format::Depth32F].map(image)).run(|| {
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
             self.fill.bind();
             for (stencil, alpha) in [(0, 0.0f32), (1, 1.0)] {
@@ -165,18 +183,20 @@ impl InkedHoles {
         });
     }
 
-    /// Averages the samples, once the holes are drawn. Nothing needs the stencil any more.
-    pub(crate) fn average(&self) {
-        let whole = Destination::whole(&self.average);
-        let written = [self.average.color(0), self.average.depth()].map(Texture::image);
-        // The eye was synthesized into the same tiles, and its holes are drawn in them: they are written once.
-        self.gl.pass("resolve").write(written).run(|| match &self.samples {
-            Some(samples) => {
-                samples.average(0, &whole);
-                samples.copy_depth(&self.average);
-                samples.discard(true, true);
+    fn bind_textures(&self, program: &Program) {
+        match &self.images {
+            Images::One(image) => {
+                program.texture_of("color_map", 0, image.color(0)).texture_of("depth_map", 1, image.depth());
             }
-            None => self.gl.discard_stencil(),
-        });
+            Images::Several(samples) => {
+                if let Some((color, depth)) = samples.color().zip(samples.depth()) {
+                    program.texture_multisample("color_map", 0, color).texture_multisample(
+                        "depth_map",
+                        1,
+                        depth,
+                    );
+                }
+            }
+        }
     }
 }
