@@ -245,7 +245,10 @@ impl Rendered<'_> {
             synthesis.synthesize(self.source, warp, to)?;
             inked.inspect(|inked| inked.mark(to));
             renderer.draw_holes(&frame.scene, &view, to, samples, &source);
-            inked.inspect(|inked| inked.average());
+            if inked.is_some() {
+                // Nothing reads the stencil once the holes are drawn, and these samples are stored.
+                frame.renderer.gl.discard_stencil();
+            }
             Ok::<(), GlError>(())
         };
         let Some(inked) = inked else { return draw(to, samples, None) };
