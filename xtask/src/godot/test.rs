@@ -31,9 +31,12 @@ const SCENES: [Scene; 2] = [
         headset: false,
         cases: &[
             ["plain", "left", "plain"],
+            ["plain-holes", "left", "plain"],
             ["swapped", "right", "plain"],
+            ["swapped-holes", "right", "plain"],
             ["ipd0", "left", "ipd0"],
             ["msaa", "left", "msaa"],
+            ["msaa-holes", "left", "msaa"],
             ["glow", "left", "glow"],
             ["linear", "left", "linear"],
             ["resized", "left", "resized"],
@@ -45,20 +48,23 @@ const SCENES: [Scene; 2] = [
         headset: true,
         cases: &[
             ["plain", "left", "plain"],
+            ["plain-holes", "left", "plain"],
             ["msaa", "left", "msaa"],
+            ["msaa-holes", "left", "msaa"],
             ["swapped", "right", "plain"],
             ["resized", "left", "resized"],
         ],
     },
 ];
-/// In all scenes: what the inset shows of either eye, with levels and without them; and all else of the synthesized one,
-/// against an eye that is rendered with the same levels.
-const LEVELS: [Case; 5] = [
+/// In all scenes: what the inset shows of either eye, with levels and without them; all else of the synthesized one,
+/// against an eye that is rendered with the same levels; and its inset with rendered holes.
+const LEVELS: [Case; 6] = [
     ["fovea", "left", "fovea"],
     ["whole", "left", "fovea"],
     ["rendered-fovea", "right", "fovea"],
     ["rendered-whole", "right", "fovea"],
     ["rest", "left", "rest"],
+    ["fovea-holes", "left", "fovea"],
 ];
 /// Maximum loss of the fovea by levels.
 const LOSS: Quality = Quality { psnr: 0.1, ssim: 0.001 };
@@ -68,6 +74,8 @@ const TONE_MAPPED: f64 = 32.5;
 const MIN_SSIM: f64 = 0.975;
 /// Minimum gain in PSNR over showing the same image to both eyes, in dB.
 const GAIN: f64 = 10.0;
+/// Minimum gain in PSNR by rendered holes over filled ones, in dB.
+const HOLES_GAIN: f64 = 0.5;
 /// Minimum PSNR in dB if the distance between the eyes is 0, where nothing has to move.
 const IDENTITY: f64 = 60.0;
 /// Maximum difference of the rendered pose from the shown one, in radians and metres.
@@ -114,7 +122,8 @@ pub fn test() -> anyhow::Result<()> {
             let cases: Vec<Case> = scene.cases.iter().chain(&LEVELS).copied().collect();
             match compare(&mut || Command::new(&program), &run, &cases) {
                 Ok(figures) => {
-                    found.extend(lost(&figures[scene.cases.len()..]));
+                    found.extend(lost(&figures[scene.cases.len()..][..4]));
+                    found.extend(hardly_gained(&cases, &figures));
                     for ([case, ..], [made, same]) in cases.iter().zip(figures) {
                         println!(
                             "{what} {case}: {:.2} dB, SSIM {:.4}; the same image to both eyes {:.2} dB, {:.4}",
@@ -229,13 +238,21 @@ fn too_far(scene: &Scene, case: &str, made: Quality, same: Quality) -> Option<St
     let sound = match case {
         "ipd0" => made.psnr >= IDENTITY,
         // Parts with more edges than the whole, which are compared with each other.
-        "fovea" | "whole" => made.psnr >= same.psnr + GAIN,
+        "fovea" | "whole" | "fovea-holes" => made.psnr >= same.psnr + GAIN,
         _ => made.psnr >= floor && made.ssim >= MIN_SSIM && made.psnr >= same.psnr + GAIN,
     };
     (!sound).then(|| format!("{case} is too far from Godot's own eye: {:.2} dB, {:.4}", made.psnr, made.ssim))
 }
 
-/// Returns what each eye's fovea loses by levels, if that is too much. The figures are those of [`LEVELS`].
+/// Returns what rendered holes gain over the case without them, if that is too little.
+fn hardly_gained(cases: &[Case], figures: &[[Quality; 2]]) -> Vec<String> {
+    let find = |name: &str| Some(figures[cases.iter().position(|case| case[0] == name)?][0].psnr);
+    let gain = |[case, ..]: &Case| Some((*case, find(case)? - find(case.strip_suffix("-holes")?)?));
+    let small = cases.iter().filter_map(gain).filter(|(_, gain)| *gain < HOLES_GAIN);
+    small.map(|(case, gain)| format!("{case} gains too little: {gain:.2} dB")).collect()
+}
+
+/// Returns what each eye's fovea loses by levels, if that is too much. The figures are the first four of [`LEVELS`].
 fn lost(figures: &[[Quality; 2]]) -> impl Iterator<Item = String> {
     let losses = figures.chunks_exact(2).map(|eye| {
         let ([fovea, _], [whole, _]) = (eye[0], eye[1]);
@@ -279,6 +296,14 @@ mod tests {
         assert!(too_far(&SCENES[0], "plain", quality(34.0), quality(22.0)).is_none());
         assert!(too_far(&SCENES[0], "linear", quality(34.0), quality(22.0)).is_some());
         assert!(too_far(&SCENES[0], "ipd0", quality(36.0), quality(36.0)).is_some());
+    }
+
+    #[test]
+    fn rendered_holes_must_gain() {
+        let figures = |holes| [36.0, holes].map(|psnr| [Quality { psnr, ssim: 0.98 }; 2]);
+        let cases = &SCENES[0].cases[..2];
+        assert!(hardly_gained(cases, &figures(37.5)).is_empty());
+        assert_eq!(hardly_gained(cases, &figures(36.2)).len(), 1);
     }
 
     #[test]

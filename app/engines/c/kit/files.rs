@@ -42,7 +42,11 @@ const GODOT: [(&str, &str, &str, Versions); 7] = [
         "march.glsl",
         "synthesis/march.vert",
         "synthesis/gather/march.frag",
-        &[("depth", &["WRITE_DEPTH"]), ("map", &["WRITE_DEPTH", "SOURCE_MAP"])],
+        &[
+            ("depth", &["WRITE_DEPTH"]),
+            ("open", &["WRITE_DEPTH", "OPEN_HOLES"]),
+            ("map", &["WRITE_DEPTH", "SOURCE_MAP"]),
+        ],
     ),
     ("any_view_tiles.glsl", "screen.vert", "synthesis/any_view/tiles.frag", &[]),
     ("any_view_spans.glsl", "screen.vert", "synthesis/any_view/spans.frag", &[]),

@@ -31,8 +31,8 @@ func _initialize() -> void:
 	await _choose(Item.REPLACE)
 	print("fact replaced %s, near %s, children %d" % [camera is YoroCamera3D, camera.near, camera.get_child_count()])
 	print("fact warnings before: %d" % camera._get_configuration_warnings().size())
-	var shown := ProjectSettings.get_property_list().filter(func(it: Dictionary) -> bool: return it.name == YoroCamera3D.FOVEATION_SETTING)
-	print("fact foveation on the settings page: %s" % [shown.map(func(it: Dictionary) -> String: return it.hint_string)])
+	var shown := ProjectSettings.get_property_list().filter(func(it: Dictionary) -> bool: return it.name.begins_with("xr/yoro/"))
+	print("fact on the settings page: %s" % [shown.map(func(it: Dictionary) -> String: return it.hint_string)])
 	if out != "":
 		_open(camera)
 	await _picture("menu")

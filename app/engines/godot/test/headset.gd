@@ -46,11 +46,11 @@ class Look:
 		var buffers := data.get_render_scene_buffers() as RenderSceneBuffersRD
 		if source != null and source.is_ready():
 			var scene := data.get_render_scene_data()
-			var eye := scene.get_cam_transform().translated_local(scene.get_view_eye_offset(source.levels.whole.rendered))
+			var rendered := source.levels.whole.rendered
 			for level in source.drawn():
-				var pose := level.synthesis.pose
-				radians = maxf(radians, (eye.basis.inverse() * pose.basis).get_rotation_quaternion().get_angle())
-				metres = maxf(metres, eye.origin.distance_to(pose.origin))
+				_compare(scene, rendered, level.synthesis.pose)
+			if source.opens:
+				_compare(scene, 1 - rendered, source.holes.pose)
 		if not wanted or source == null:
 			return
 		wanted = false
@@ -68,6 +68,11 @@ class Look:
 			passes.draw("look", [copy], [buffers.get_texture_slice("render_buffers", "color", view, 0, 1, 1)], push)
 			pictures.append(Image.create_from_data(size.x, size.y, false, Image.FORMAT_RGBA8, passes.device.texture_get_data(copy, 0)))
 			YoroPasses.free_all(passes.device, [copy])
+
+	func _compare(scene: RenderSceneData, view: int, pose: Transform3D) -> void:
+		var eye := scene.get_cam_transform().translated_local(scene.get_view_eye_offset(view))
+		radians = maxf(radians, (eye.basis.inverse() * pose.basis).get_rotation_quaternion().get_angle())
+		metres = maxf(metres, eye.origin.distance_to(pose.origin))
 
 
 func _ready() -> void:
@@ -112,9 +117,13 @@ func _ready() -> void:
 	hold.at = was
 	interface.render_target_size_multiplier = 2.0
 	await _case("plain")
+	await _holes("plain")
 	await _pause(interface)
+	camera.holes = YoroCamera3D.Holes.PROJECT
 	get_viewport().msaa_3d = Viewport.MSAA_4X
 	await _case("msaa")
+	await _holes("msaa")
+	camera.holes = YoroCamera3D.Holes.PROJECT
 	await TestLevels.save(camera, Vector3(-0.25, 0.1, -1.0), _pictures, out)
 	get_viewport().msaa_3d = Viewport.MSAA_DISABLED
 	camera.dominant_eye = YoroCamera3D.Eye.LEFT
@@ -126,6 +135,7 @@ func _ready() -> void:
 	await _frames(2)
 	await _case("resized")
 	# The head moves again: these pictures are not compared.
+	camera.holes = YoroCamera3D.Holes.RENDERED
 	camera.foveation = YoroCamera3D.Foveation.HIGH
 	interface.render_target_size_multiplier = 0.5
 	first.queue_free()
@@ -187,6 +197,12 @@ func _case(name: String, modes: Array[String] = ["BOTH_VIEWS", "ONE_VIEW"]) -> v
 		var pictures := await _pictures()
 		for view in 2:
 			pictures[view].save_png("%s/%s-%s-%s.png" % [out, name, mode.to_lower(), ["left", "right"][view]])
+
+
+## Pictures with rendered holes, which stay so.
+func _holes(name: String) -> void:
+	camera.holes = YoroCamera3D.Holes.RENDERED
+	await _case(name + "-holes", ["ONE_VIEW"])
 
 
 func _pictures() -> Array[Image]:

@@ -4,8 +4,8 @@ class_name TestLevels
 const EYES: PackedStringArray = ["left", "right"]
 
 
-## Takes pictures of both eyes with [param take], and saves parts of them in [param folder]: as [code]fovea[/code] and
-## [code]whole[/code] what the inset shows, with levels and without them; as [code]rest[/code] all else, against an eye
+## Takes pictures of both eyes with [param take], and saves parts of them in [param folder]: as [code]fovea[/code],
+## [code]fovea-holes[/code] and [code]whole[/code] what the inset shows, with levels, with rendered holes and without levels; as [code]rest[/code] all else, against an eye
 ## that is rendered with the same levels.
 static func save(camera: YoroCamera3D, gaze: Vector3, take: Callable, folder: String) -> void:
 	camera.gaze = gaze
@@ -15,6 +15,9 @@ static func save(camera: YoroCamera3D, gaze: Vector3, take: Callable, folder: St
 	camera.foveation = YoroCamera3D.Foveation.OFF
 	var whole: Array[Image] = await take.call()
 	camera.foveation = YoroCamera3D.Foveation.MEDIUM
+	camera.holes = YoroCamera3D.Holes.RENDERED
+	var open: Array[Image] = await take.call()
+	camera.holes = YoroCamera3D.Holes.PROJECT
 	var levels: Array[Image] = await take.call()
 	var split := camera.source().levels
 	var counted := camera.source().drawn().map(func(eye: YoroEye) -> Vector2i: return eye.synthesis.views.size)
@@ -28,7 +31,7 @@ static func save(camera: YoroCamera3D, gaze: Vector3, take: Callable, folder: St
 		var scale := Vector2(levels[eye].get_size()) / (split.whole.covered * Vector2(split.whole.eye_size))
 		var place := Rect2(split.places[eye])
 		var inside := Rect2i(Rect2(place.position * scale, place.size * scale).grow(-1.0))
-		var parts := {"fovea-both_views": godots, "fovea-one_view": levels, "whole-one_view": whole}
+		var parts := {"fovea-both_views": godots, "fovea-holes-one_view": open, "fovea-one_view": levels, "whole-one_view": whole}
 		for name: String in parts:
 			var part: Image = parts[name][eye].get_region(inside)
 			part.save_png("%s/%s-%s.png" % [folder, name, EYES[eye]])

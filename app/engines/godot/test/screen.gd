@@ -23,12 +23,17 @@ func _ready() -> void:
 	print("fact served %s" % [_served()])
 	print("fact shaders of the kit that the add-on does not use: %d" % _compiled("res://test/kit"))
 	await _case("plain")
+	var before := _image(camera.dominant_eye)
+	await _holes("plain")
+	print("fact with rendered holes the rendered eye is as before: %s" % [before.get_data() == _image(camera.dominant_eye).get_data()])
+	camera.holes = YoroCamera3D.Holes.PROJECT
 	camera.dominant_eye = YoroCamera3D.Eye.LEFT
 	await _case("swapped", ["ONE_VIEW"])
+	await _holes("swapped")
+	camera.holes = YoroCamera3D.Holes.PROJECT
 	camera.dominant_eye = YoroCamera3D.Eye.RIGHT
 	await _frames(2)
 	# Without stereo layers, glass is drawn with the rendered eye, whose picture must not change.
-	var before := _image(camera.dominant_eye)
 	camera.stereo_layers = 0
 	await _frames(2)
 	var levels: float = before.compute_image_metrics(_image(camera.dominant_eye), false).max
@@ -39,6 +44,8 @@ func _ready() -> void:
 	camera.ipd_scale = 1.0
 	get_viewport().msaa_3d = Viewport.MSAA_4X
 	await _case("msaa")
+	await _holes("msaa")
+	camera.holes = YoroCamera3D.Holes.PROJECT
 	get_viewport().msaa_3d = Viewport.MSAA_DISABLED
 	room.environment.environment.glow_enabled = true
 	room.environment.environment.glow_bloom = 0.3
@@ -119,6 +126,11 @@ func _has_levels() -> void:
 	await _frames(2)
 	print("fact the project sets the foveation: %s" % [camera.source().levels.inset == null])
 	_count("off")
+	ProjectSettings.set_setting(YoroCamera3D.HOLES_SETTING, 1)
+	await _frames(2)
+	print("fact the project sets the holes: %s" % [camera.source().opens])
+	_count("rendered holes")
+	ProjectSettings.set_setting(YoroCamera3D.HOLES_SETTING, 0)
 	camera.mode = YoroCamera3D.Mode.BOTH_VIEWS
 	await _frames(2)
 	_count("both views")
@@ -133,11 +145,13 @@ func _count(what: String) -> void:
 	drawn.assign(camera.preview().eyes)
 	if camera.mode == YoroCamera3D.Mode.ONE_VIEW:
 		drawn.append_array(camera.source().drawn())
+		if camera.source().opens:
+			drawn.append(camera.source().beyond)
 	var calls: Array[Array] = []
 	var pixels := 0
 	for viewport in drawn:
 		var rendered := 0
-		if viewport is YoroEye:
+		if viewport is YoroEye and viewport.synthesis != null:
 			rendered = viewport.synthesis.views.size.x * viewport.synthesis.views.size.y
 		elif camera.mode == YoroCamera3D.Mode.BOTH_VIEWS:
 			rendered = (viewport as SubViewport).size.x * (viewport as SubViewport).size.y
@@ -253,6 +267,12 @@ func _case(name: String, modes: Array[String] = ["BOTH_VIEWS", "ONE_VIEW"]) -> v
 		# The picture follows changes of the environment within eight frames.
 		await _frames(9 if name in ["glow", "linear"] and mode == "ONE_VIEW" else 2)
 		_save("%s-%s" % [name, mode.to_lower()])
+
+
+## Saves both eyes with rendered holes, which stay so.
+func _holes(name: String) -> void:
+	camera.holes = YoroCamera3D.Holes.RENDERED
+	await _case(name + "-holes", ["ONE_VIEW"])
 
 
 func _save(name: String) -> void:

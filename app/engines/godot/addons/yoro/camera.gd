@@ -21,7 +21,7 @@ enum Eye {
 }
 enum DebugView {
 	NONE, ## The eyes as they are.
-	HOLES, ## What the rendered eye does not see, and is invented, in magenta.
+	HOLES, ## What the rendered eye does not see, and is invented or rendered, in magenta.
 	DISPARITY, ## How far surfaces move between the eyes: white is a tenth of the image's width.
 	SYNTHESIZED, ## The synthesized eye's image to both eyes.
 }
@@ -31,6 +31,11 @@ enum Foveation {
 	LOW, ## All pixels within 30° of the gaze, half of them along each axis beyond.
 	MEDIUM, ## All pixels within 20° of the gaze, half of them along each axis beyond.
 	HIGH, ## All pixels within 20° of the gaze, a third of them along each axis beyond.
+}
+enum Holes {
+	PROJECT, ## As the project settings say, in [i]XR > Yoro[/i].
+	FILLED, ## With what lies behind the nearer surface.
+	RENDERED, ## Godot draws the scene there once more, for the other eye.
 }
 ## What Godot draws with this camera.
 enum _Drawn {
@@ -46,6 +51,8 @@ const SHOWN_OVERRIDES := {
 }
 ## The project setting of the foveation where a camera has none of its own: 0 off, 1 low, 2 medium, 3 high.
 const FOVEATION_SETTING := "xr/yoro/foveation"
+## The same of the holes: 0 filled, 1 rendered.
+const HOLES_SETTING := "xr/yoro/holes"
 ## Godot renders both eyes once this share of the view is near, and until less than [code]_SWITCH_OFF[/code] is: the
 ## same as yoro's NearFieldPolicy.
 const _SWITCH_ON := 0.5
@@ -61,6 +68,9 @@ const _SWITCH_OFF := 0.35
 ## How many pixels are rendered where the eyes do not look. A wide view of fewer pixels and an inset of all of them
 ## are rendered and synthesized apart, then composed. What is on [member stereo_layers] has all pixels.
 @export var foveation := Foveation.PROJECT
+## What the synthesized eye shows where the rendered eye sees nothing. Rendered holes are what Godot itself draws; the
+## scene's vertices, draw calls and shadow maps double. With [member foveation], holes of the wide view are filled.
+@export var holes := Holes.PROJECT
 ## The distance between the eyes, as a share of the headset's: 0 shows the same image to both. In XR, things on
 ## [member stereo_layers] keep the headset's distance.
 @export_range(0.0, 2.0, 0.01) var ipd_scale := 1.0
@@ -132,6 +142,13 @@ func source() -> YoroSource:
 ## Returns the strength of the foveation in use: 0 off, 1 low, 2 medium, 3 high.
 func foveation_strength() -> int:
 	return ProjectSettings.get_setting(FOVEATION_SETTING, 0) if foveation == Foveation.PROJECT else foveation - 1
+
+
+## Returns whether holes of the synthesized eye are rendered.
+func renders_holes() -> bool:
+	if mode == Mode.SAME_IMAGE or debug_view == DebugView.HOLES:
+		return false
+	return ProjectSettings.get_setting(HOLES_SETTING, 0) == 1 if holes == Holes.PROJECT else holes == Holes.RENDERED
 
 
 ## Returns [member gaze] in the axes of the rendered eye, which is at [param at].
@@ -226,6 +243,7 @@ func _make() -> void:
 	_nearness = YoroNearness.new(_source.wide.synthesis)
 	_latch = YoroLatch.new()
 	_latch.cameras = [_source.wide.camera.get_camera_rid(), _source.inset.camera.get_camera_rid()]
+	_latch.other = _source.beyond.camera.get_camera_rid()
 	_latch_viewport = SubViewport.new()
 	_latch_viewport.size = Vector2i(2, 2)
 	# A world of its own has nothing that would have to be culled.
@@ -268,6 +286,7 @@ func _draw(interface: XRInterface, viewport: Viewport) -> void:
 	_put.same_image = mode == Mode.SAME_IMAGE
 	_latch.interface = interface
 	_latch.rendered = dominant_eye
+	_latch.apart = levels.whole.apart
 	_source.draw(levels, at[dominant_eye], self, viewport, effects(false))
 	_draw_stereo_layers()
 

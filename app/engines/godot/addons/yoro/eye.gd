@@ -1,4 +1,4 @@
-## The viewport of a level of the rendered eye, which also synthesizes the other one's.
+## The viewport of a level of the rendered eye, which also synthesizes the other one's, or of what holes of that show.
 @tool
 class_name YoroEye
 extends SubViewport
@@ -13,13 +13,17 @@ const SHARED: PackedStringArray = [
 ]
 
 var camera := Camera3D.new()
+## The effect that makes the other eye, or null in the viewport of its holes.
 var synthesis: YoroSynthesis
-var _environment := YoroEnvironment.new(_OVERRIDES)
+var _last: CompositorEffect
+var _environment: YoroEnvironment
 var _effects: Array[CompositorEffect] = []
 
 
-func _init(passes: YoroPasses) -> void:
-	synthesis = YoroSynthesis.new(passes)
+func _init(last: CompositorEffect, overrides := {}) -> void:
+	_last = last
+	synthesis = last as YoroSynthesis
+	_environment = YoroEnvironment.new(_OVERRIDES.merged(overrides))
 	# Godot's post-processed picture is not shown, so a quarter of its pixels is cheaper. The synthesis uses all
 	# rendered pixels.
 	scaling_3d_mode = Viewport.SCALING_3D_MODE_BILINEAR
@@ -32,11 +36,16 @@ func _init(passes: YoroPasses) -> void:
 
 
 ## Takes over the settings of the camera [param like], except for what Godot draws for both eyes, and those of the
-## viewport [param shown]. [param effects] are drawn before the synthesis. [param layers] are shown in addition.
-func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect], layers: int) -> void:
+## viewport [param shown]. [param effects] are drawn before the last one. [param layers] are shown in addition.
+## [param density] is the number of pixels along each axis for each of a whole eye's.
+func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect], layers: int, density: float) -> void:
 	for name in SHARED:
 		if get(name) != shown.get(name):
 			set(name, shown.get(name))
+	# Levels of detail are those of the eye's own pixels in each level. The viewport has half of these.
+	var threshold := shown.mesh_lod_threshold * 0.5 * density
+	if mesh_lod_threshold != threshold:
+		mesh_lod_threshold = threshold
 	if world_3d != like.get_world_3d():
 		world_3d = like.get_world_3d()
 	_environment.follow(like.shown_environment())
@@ -46,7 +55,7 @@ func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect
 	if effects != _effects or camera.compositor.compositor_effects.is_empty():
 		_effects = effects.duplicate()
 		var all := _effects.duplicate()
-		all.append(synthesis)
+		all.append(_last)
 		camera.compositor.compositor_effects = all
 
 
@@ -64,11 +73,10 @@ static func renew_shadows(of: Viewport) -> void:
 		RenderingServer.viewport_set_positional_shadow_atlas_size(of.get_viewport_rid(), size, of.positional_shadow_atlas_16_bits)
 
 
-## Draws [param views] from [param at] in this frame.
-func draw(views: YoroViews, at: Transform3D, near: float, far: float) -> void:
-	if size != views.size / 2:
-		size = views.size / 2
-	var f := views.frustum
+## Draws an image of [param pixels], an even size, from [param at] in this frame, with the tangents left, right, up and down.
+func draw(pixels: Vector2i, f: Array[float], at: Transform3D, near: float, far: float) -> void:
+	if size != pixels / 2:
+		size = pixels / 2
 	camera.set_frustum((f[2] - f[3]) * near, Vector2(f[0] + f[1], f[2] + f[3]) * 0.5 * near, near, far)
 	camera.global_transform = at
 	render_target_update_mode = SubViewport.UPDATE_ALWAYS

@@ -1,6 +1,6 @@
-## Places the rendered eye's cameras when a frame is drawn. OpenXR locates the eyes anew after all scripts have run, so
-## scripts see the poses of the last frame. This effect belongs to the camera of a tiny viewport that is drawn before
-## the eye's.
+## Places the cameras of the rendered eye and of the other eye's holes when a frame is drawn. OpenXR locates the eyes
+## anew after all scripts have run, so scripts see the poses of the last frame. This effect belongs to the camera of a
+## tiny viewport that is drawn before theirs.
 @tool
 class_name YoroLatch
 extends CompositorEffect
@@ -8,6 +8,9 @@ extends CompositorEffect
 var interface: XRInterface
 var cameras: Array[RID] = []
 var rendered := 1
+## The camera of the other eye's holes, and its place in the axes of the rendered eye, in metres.
+var other: RID
+var apart: Vector3
 
 
 func _init() -> void:
@@ -16,5 +19,7 @@ func _init() -> void:
 
 func _render_callback(_type: int, _data: RenderData) -> void:
 	if interface != null and interface.is_initialized():
+		var at := interface.get_transform_for_view(rendered, XRServer.world_origin)
 		for camera in cameras:
-			RenderingServer.camera_set_transform(camera, interface.get_transform_for_view(rendered, XRServer.world_origin))
+			RenderingServer.camera_set_transform(camera, at)
+		RenderingServer.camera_set_transform(other, at.translated_local(apart))

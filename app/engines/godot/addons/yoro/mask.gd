@@ -1,5 +1,5 @@
-## Keeps a camera from shading what lies outside of a rectangle of its image: a frame around it that is as near as
-## anything can be, and drawn before all else.
+## Keeps a camera from shading what lies outside of a rectangle of its image, or of what a map leaves open: a frame that is
+## as near as anything can be, and drawn before all else.
 @tool
 class_name YoroMask
 extends RefCounted
@@ -15,13 +15,22 @@ shader_type spatial;
 render_mode unshaded, cull_disabled, shadows_disabled, fog_disabled;
 // The rectangle's corners, from 0 to 1.
 uniform vec4 rectangle;
+uniform sampler2D open_map : filter_nearest;
+uniform ivec2 corner;
 void vertex() {
 	vec2 place = mix(VERTEX.xy, mix(rectangle.xy, rectangle.zw, VERTEX.xy), VERTEX.z);
 	POSITION = vec4(place * 2.0 - 1.0, 1.0, 1.0);
 }
 void fragment() {
+	%s
 	ALBEDO = vec3(0.0);
 }
+"
+const _OPENS := "
+	uvec2 texel = uvec2(ivec2(FRAGCOORD.xy) - corner);
+	if (all(lessThan(texel, uvec2(textureSize(open_map, 0)))) && texelFetch(open_map, ivec2(texel), 0).r == 1.0) {
+		discard;
+	}
 "
 
 var _mesh := ArrayMesh.new()
@@ -32,12 +41,14 @@ var _scenario: RID
 var _layer := 0
 
 
-func _init() -> void:
+## [param open_map] is 1 where pixels are shaded, or null for a frame around a rectangle.
+func _init(open_map: Texture2D = null) -> void:
 	var free := LAYERS & ~_taken
 	_layer = free & -free
 	_taken |= _layer
 	_material.shader = Shader.new()
-	_material.shader.code = _SHADER
+	_material.shader.code = _SHADER % [_OPENS if open_map != null else ""]
+	_material.set_shader_parameter(&"open_map", open_map)
 	_material.render_priority = Material.RENDER_PRIORITY_MIN
 	var vertices := PackedVector3Array()
 	for z in 2:
@@ -71,14 +82,16 @@ func layer() -> int:
 	return _layer
 
 
-## Leaves only [param rectangle] of images of [param size] in a world.
-func follow(world: World3D, rectangle: Rect2i, size: Vector2i) -> void:
+## Leaves only [param rectangle] of images of [param size] in a world; with a map, which lies at [param corner], only what is
+## 1 there.
+func follow(world: World3D, rectangle: Rect2i, size: Vector2i, corner := Vector2i.ZERO) -> void:
 	if _scenario != world.scenario:
 		_scenario = world.scenario
 		RenderingServer.instance_set_scenario(_instance, _scenario)
 	var from := Vector2(rectangle.position) / Vector2(size)
 	var to := Vector2(rectangle.end) / Vector2(size)
 	_material.set_shader_parameter(&"rectangle", Vector4(from.x, from.y, to.x, to.y))
+	_material.set_shader_parameter(&"corner", corner)
 	RenderingServer.instance_set_visible(_instance, true)
 
 

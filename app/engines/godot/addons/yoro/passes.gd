@@ -64,11 +64,12 @@ func texture(size: Vector2i, format: RenderingDevice.DataFormat) -> RID:
 	return device.texture_create(f, RDTextureView.new())
 
 
-## Draws a pass over the whole of [param targets], the last of which is depth if [param compare] is not the default.
+## Draws a pass over the whole of [param targets], the last of which is depth if [param compare] is not the default, and 1
+## at first if [param clears_depth] is true.
 func draw(shader: String, targets: Array[RID], textures: Array[RID], push: PackedByteArray,
-		compare := RenderingDevice.COMPARE_OP_NEVER) -> void:
+		compare := RenderingDevice.COMPARE_OP_NEVER, clears_depth := false) -> void:
 	var framebuffer := FramebufferCacheRD.get_cache_multipass(targets, [], 1)
-	var list := device.draw_list_begin(framebuffer)
+	var list := device.draw_list_begin(framebuffer, RenderingDevice.DRAW_CLEAR_DEPTH if clears_depth else RenderingDevice.DRAW_DEFAULT_ALL)
 	device.draw_list_bind_render_pipeline(list, _pipeline(shader, device.framebuffer_get_format(framebuffer), targets.size(), compare))
 	device.draw_list_bind_uniform_set(list, _bound(shader, textures), 0)
 	device.draw_list_set_push_constant(list, push, push.size())

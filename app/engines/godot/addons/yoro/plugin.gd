@@ -9,12 +9,13 @@ var _preview: YoroPreview
 
 
 func _enter_tree() -> void:
-	var setting := YoroCamera3D.FOVEATION_SETTING
-	if not ProjectSettings.has_setting(setting):
-		ProjectSettings.set_setting(setting, 0)
-	ProjectSettings.set_initial_value(setting, 0)
-	ProjectSettings.set_as_basic(setting, true)
-	ProjectSettings.add_property_info({name = setting, type = TYPE_INT, hint = PROPERTY_HINT_ENUM, hint_string = "Off,Low,Medium,High"})
+	var settings := {YoroCamera3D.FOVEATION_SETTING: "Off,Low,Medium,High", YoroCamera3D.HOLES_SETTING: "Filled,Rendered"}
+	for setting: String in settings:
+		if not ProjectSettings.has_setting(setting):
+			ProjectSettings.set_setting(setting, 0)
+		ProjectSettings.set_initial_value(setting, 0)
+		ProjectSettings.set_as_basic(setting, true)
+		ProjectSettings.add_property_info({name = setting, type = TYPE_INT, hint = PROPERTY_HINT_ENUM, hint_string = settings[setting]})
 	_menu.text = "yoro"
 	_menu.tooltip_text = "One rendered eye, one synthesized."
 	var popup := _menu.get_popup()

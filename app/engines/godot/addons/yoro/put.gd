@@ -59,6 +59,7 @@ func _places(of: int) -> PackedFloat32Array:
 	var corner := levels.wide_corners[of]
 	var place := levels.places[of]
 	var inset_corner := (inset.crop if is_rendered else Vector2i.ZERO) - place.position
-	var column := Vector3(0.0, 0.5, 0.0) if is_rendered else inset.source_column
+	# With rendered holes, the other eye's inset is complete.
+	var column := Vector3(0.0, 0.5, 0.0) if is_rendered or source.opens else inset.source_column
 	return PackedFloat32Array([corner.x, corner.y, place.position.x, place.position.y, place.end.x, place.end.y, inset_corner.x, inset_corner.y,
 			column.x, column.y, column.z, levels.whole.pitch / levels.wide.pitch, levels.wide.max_disparity])

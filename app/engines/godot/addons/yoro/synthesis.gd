@@ -6,6 +6,8 @@ extends CompositorEffect
 
 ## Also makes [member source_map], which marks holes.
 var map := false
+## If this is a texture of [member YoroViews.eye_size], holes and silhouettes stay open, and it becomes 1 there.
+var open_map: RID
 ## The views of the frame, and the part of the drawn image that is theirs, to be set before it is drawn.
 var views: YoroViews
 var part: Rect2i
@@ -96,6 +98,10 @@ func _render_callback(_type: int, data: RenderData) -> void:
 	var eye: Array[RID] = [synthesized_color, synthesized_depth]
 	if map:
 		eye.insert(1, source_map)
-	passes.draw("march_map" if map else "march_depth", eye, [rendered_depth, rendered_color, _tiles, _spans],
-			views.uniforms, RenderingDevice.COMPARE_OP_ALWAYS)
+	var opens := open_map.is_valid()
+	passes.draw("march_map" if map else "march_open" if opens else "march_depth", eye, [rendered_depth, rendered_color, _tiles, _spans],
+			views.uniforms, RenderingDevice.COMPARE_OP_ALWAYS, opens)
+	if opens:
+		var push := PackedInt32Array([0, 0, 1, 0]).to_byte_array()
+		passes.draw("part_depth", [open_map], [synthesized_depth], push)
 	passes.device.draw_command_end_label()

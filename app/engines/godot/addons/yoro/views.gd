@@ -24,6 +24,11 @@ var eye_size: Vector2i
 var covered: Vector2
 ## The eye that is rendered: 0 left, 1 right.
 var rendered: int
+## The other eye's place in the axes of the rendered eye, in metres.
+var apart: Vector3
+## The frustum and the size of an image that has the other eye's, and is of even size.
+var other_frustum: Array[float]
+var other_size: Vector2i
 ## The tangents that a pixel of each image covers.
 var pitch: float
 ## Where in the image to render a pixel of the other eye comes from, as a share of its width: X times its column, plus Y,
@@ -84,9 +89,12 @@ func _fill(frusta: Array, between: Transform3D, near: float, far: float, rendere
 	var right := _ceil((t[1] - s[1]) / pitch) + (0 if to_left else guard)
 	var above := _ceil(row)
 	var below := _ceil((s[3] - t[3]) / pitch)
-	# Make the size even: YoroEye draws at twice the size of its viewport.
+	# Make the sizes even: YoroEye draws at twice the size of its viewport.
 	right += (eye.x + left + right) % 2
 	below += (eye.y + above + below) % 2
+	other_size = eye + eye % 2
+	other_frustum = [t[0], t[0] + other_size.x * pitch, t[2], t[2] - other_size.y * pitch]
+	apart = Vector3(-ipd if to_left else ipd, 0.0, 0.0)
 	size = eye + Vector2i(left + right, above + below)
 	crop = Vector2i(left, above)
 	var corner := Vector2(s[0] - left * pitch, s[2] + above * pitch)

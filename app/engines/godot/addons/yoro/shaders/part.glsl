@@ -1,7 +1,10 @@
 #[versions]
+depth = "";
 nearest = "#define SAMPLES";
 single = "#define COLOR";
 both = "#define SAMPLES\n#define COLOR";
+holes = "#define COLOR\n#define HOLES";
+holes_nearest = "#define SAMPLES\n#define COLOR\n#define HOLES";
 
 #[vertex]
 #include "triangle.glslinc"
@@ -10,7 +13,7 @@ both = "#define SAMPLES\n#define COLOR";
 #version 450
 #VERSION_DEFINES
 // A part of an image: its depth, with SAMPLES the nearest of each pixel's, and with COLOR its colour. Depth is 1 at the
-// near plane.
+// near plane. With HOLES, the depth goes to the depth buffer, and what is at the near plane is left out.
 #ifdef SAMPLES
 layout(set = 0, binding = 0) uniform sampler2DMS depth_map;
 #else
@@ -18,26 +21,40 @@ layout(set = 0, binding = 0) uniform sampler2D depth_map;
 #endif
 #ifdef COLOR
 layout(set = 0, binding = 1) uniform sampler2D color_map;
+#endif
+#ifdef HOLES
+layout(location = 0) out vec4 color;
+#else
+layout(location = 0) out float depth;
+#ifdef COLOR
 layout(location = 1) out vec4 color;
+#endif
 #endif
 layout(push_constant, std430) uniform Place {
     ivec2 corner;
     // The number of samples.
     int count;
 };
-layout(location = 0) out float depth;
 
 void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy) + corner;
 #ifdef SAMPLES
-    depth = 0.0;
+    float nearest = 0.0;
     for (int i = 0; i < count; ++i) {
-        depth = max(depth, texelFetch(depth_map, texel, i).r);
+        nearest = max(nearest, texelFetch(depth_map, texel, i).r);
     }
 #else
-    depth = texelFetch(depth_map, texel, 0).r;
+    float nearest = texelFetch(depth_map, texel, 0).r;
 #endif
 #ifdef COLOR
     color = texelFetch(color_map, texel, 0);
+#endif
+#ifdef HOLES
+    if (nearest == 1.0) {
+        discard;
+    }
+    gl_FragDepth = nearest;
+#else
+    depth = nearest;
 #endif
 }
