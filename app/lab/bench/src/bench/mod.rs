@@ -33,7 +33,7 @@ pub use blank::{Blank, BlankFinder, BlankView};
 pub use contender::Contender;
 pub use job::{Choices, Job, Source};
 pub use pictures::{picture_folder, pictures_beside};
-pub use record::{Conditions, Measurement, Record, RecordError, Results, Writer, metric};
+pub use record::{Conditions, Measurement, Record, Results, Writer, metric};
 pub use report::BenchReport;
 pub use results::{Measured, SettingData, Spread, SuiteData};
 pub use runner::{Inputs, Runner};
