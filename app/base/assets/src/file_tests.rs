@@ -70,7 +70,7 @@ fn square(rest: &str) -> String {
 
 #[test]
 fn three_vertices_and_a_face_are_a_model() {
-    let model = obj(&square("f 1 2 3 4"));
+    let model = obj(square("f 1 2 3 4"));
     assert_eq!((model.triangle_count(), model.vertices.len()), (2, 4));
     assert!(model.vertices.iter().all(|v| v.normal == Vec3::Z && v.uv == Vec2::ZERO));
     assert_eq!(model.materials, [Material { double_sided: true, ..Material::default() }]);
@@ -81,14 +81,14 @@ fn three_vertices_and_a_face_are_a_model() {
 fn corners_are_read_in_all_spellings() {
     let given = "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 2\nvn 1 0 0\n";
     for face in ["1/1/1 2/2/1 3/3/1", "-4/-3/-2 -3/-2/-2 -2/-1/-2", "1/1/-2 2/2/1 -2/3/-2"] {
-        let model = obj(&square(&format!("{given}f {face}\n")));
+        let model = obj(square(&format!("{given}f {face}\n")));
         assert_eq!(
             model.vertices[2],
             Vertex { position: Vec3::new(1., 1., 0.), normal: Vec3::Z, uv: Vec2::ONE },
             "{face}"
         );
     }
-    let model = obj(&square(&format!("{given}f 1//2 2//2 3//2\nf 1/1 3/3 4/0/0\n")));
+    let model = obj(square(&format!("{given}f 1//2 2//2 3//2\nf 1/1 3/3 4/0/0\n")));
     assert_eq!(model.vertices[0].normal, Vec3::X);
     // The second face shares no vertex with the first and gets its own normal.
     let last = model.vertices[model.indices[5] as usize];
@@ -97,7 +97,7 @@ fn corners_are_read_in_all_spellings() {
 
 #[test]
 fn corners_with_and_without_normals_do_not_mix_up() {
-    let model = obj(&square("vn 1 0 0\nvt .5 .5\nf 1 2//1 3/1\n"));
+    let model = obj(square("vn 1 0 0\nvt .5 .5\nf 1 2//1 3/1\n"));
     let of = |k: usize| model.vertices[model.indices[k] as usize];
     assert_eq!([of(0).normal, of(1).normal, of(2).normal], [Vec3::Z, Vec3::X, Vec3::Z]);
     assert_eq!(of(2).uv, Vec2::splat(0.5));
@@ -105,23 +105,22 @@ fn corners_with_and_without_normals_do_not_mix_up() {
 
 #[test]
 fn line_ends_of_every_system_are_read() {
-    let unix = obj(&square("f 1 2 3 4\n"));
-    assert_eq!(obj(&square("f 1 2 3 4\n").replace('\n', "\r\n")), unix);
-    assert_eq!(obj(&square("f 1 2 3 4\n").replace('\n', "\r")), unix);
-    assert_eq!(obj(&square("f 1 2 \\\n3 \\\r\n4 # a face")), unix);
-    assert_eq!(obj(&format!("\u{feff}{}", square("f 1 2 3 4"))), unix);
-    assert_eq!(obj(&square("\t f\t1  2\t3 4   ")), unix);
+    let unix = obj(square("f 1 2 3 4\n"));
+    assert_eq!(obj(square("f 1 2 3 4\n").replace('\n', "\r\n")), unix);
+    assert_eq!(obj(square("f 1 2 3 4\n").replace('\n', "\r")), unix);
+    assert_eq!(obj(square("f 1 2 \\\n3 \\\r\n4 # a face")), unix);
+    assert_eq!(obj(format!("\u{feff}{}", square("f 1 2 3 4"))), unix);
+    assert_eq!(obj(square("\t f\t1  2\t3 4   ")), unix);
     let latin1 = [b"# caf\xe9\n".as_slice(), square("f 1 2 3 4").as_bytes()].concat();
     assert_eq!(obj(latin1), unix);
-    assert_eq!(obj(&square("p 1\nl 1 2 3\nf 1 2\nxyz 3\nvp 1\nf 1 2 3 4\nend")), unix);
-    assert_eq!(obj(&square("f 1 2 3 4\nf 1 2 2\n")).triangle_count(), 2);
+    assert_eq!(obj(square("p 1\nl 1 2 3\nf 1 2\nxyz 3\nvp 1\nf 1 2 3 4\nend")), unix);
+    assert_eq!(obj(square("f 1 2 3 4\nf 1 2 2\n")).triangle_count(), 2);
 }
 
 #[test]
 fn groups_and_materials_are_named_without_a_library() {
-    let model = obj(&square(
-        "usemtl a\no one\nf 1 2 3\nusemtl b\nf 1 3 4\ng two\nusemtl\ta\nf 2 3 4\ng one\nf 1 2 4",
-    ));
+    let model =
+        obj(square("usemtl a\no one\nf 1 2 3\nusemtl b\nf 1 3 4\ng two\nusemtl\ta\nf 2 3 4\ng one\nf 1 2 4"));
     let names: Vec<_> = model.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["a", "b"]);
     let parts: Vec<_> = model.parts.iter().map(|p| (p.name.as_str(), p.material, p.indices.len())).collect();
@@ -131,8 +130,8 @@ fn groups_and_materials_are_named_without_a_library() {
 #[test]
 fn smoothing_off_makes_faces_flat() {
     let roof = "v -1 0 0\nv 0 .3 0\nv 1 0 0\nv -1 0 -1\nv 0 .3 -1\nv 1 0 -1\n";
-    assert_eq!(obj(&format!("{roof}f 1 2 5 4\nf 2 3 6 5")).vertices.len(), 6);
-    assert_eq!(obj(&format!("{roof}s off\nf 1 2 5 4\nf 2 3 6 5")).vertices.len(), 8);
+    assert_eq!(obj(format!("{roof}f 1 2 5 4\nf 2 3 6 5")).vertices.len(), 6);
+    assert_eq!(obj(format!("{roof}s off\nf 1 2 5 4\nf 2 3 6 5")).vertices.len(), 8);
 }
 
 #[test]
@@ -172,7 +171,7 @@ fn paths_of_other_things_are_refused_with_a_remedy() {
 
 #[test]
 fn faces_may_refer_forward_within_their_group() {
-    assert_eq!(obj(&format!("f 1 2 3 4\n{SQUARE}")).triangle_count(), 2);
+    assert_eq!(obj(format!("f 1 2 3 4\n{SQUARE}")).triangle_count(), 2);
     refused(format!("f 1 2 3\ng x\nf 1 2 3\n{SQUARE}"), &["vertex index"]);
 }
 

@@ -105,7 +105,7 @@ impl RunArgs {
             }
         }
         bar.finish_and_clear();
-        Ok(Results::read(file)?)
+        Results::read(file)
     }
 
     fn choices(&self) -> Choices {
