@@ -178,7 +178,6 @@ fn build_with(name: &str, seed: u64, builder: SceneBuilder) -> Result<Scene, Unk
 
 /// Errors of loading a scene.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum LoadError {
     /// The name is neither that of a built-in scene nor that of a file.
     #[error("{0} Or give an OBJ, glTF or GLB file.")]

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 use yoro_scenes::hard_cases::{CASES, Case};
 
-use crate::program::{interrupt, run, succeed};
+use crate::program::{folder, interrupt, run, succeed};
 
 fn records(file: &Path) -> Vec<Value> {
     let text = fs::read_to_string(file).unwrap_or_default();
@@ -28,8 +28,7 @@ fn values(records: &[Value], contender: &str, metric: &str) -> Vec<f64> {
 
 #[test]
 fn every_method_has_its_row_and_a_cut_run_goes_on() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     let line = "bench scenes --scene prototype --size 96x96 --viewpoints 2 --rounds 2 --out run.jsonl";
     let said = succeed(at, line).stdout;
     assert!(said.contains("scenes, prototype") && said.contains("results: run.jsonl"), "{said}");
@@ -98,8 +97,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
 
 #[test]
 fn the_files_of_all_shards_are_one_run() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     let line = "bench ipd --quick --scene prototype --size 32 --rounds 1 --contender yoro-gather";
     for part in ["1/2", "2/2"] {
         succeed(at, &format!("{line} --shard {part}"));
@@ -122,8 +120,7 @@ fn the_files_of_all_shards_are_one_run() {
 
 #[test]
 fn sweeps_have_their_points_and_baselines() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     let line = "bench ipd styles flicker patchers --quick --scene prototype --size 96x96 --rounds 1 --out all.jsonl \
                 --contender yoro-gather --contender yoro-paper --contender patcher-gather --contender patcher-median";
     succeed(at, line);
@@ -167,8 +164,7 @@ fn sweeps_have_their_points_and_baselines() {
 /// Every experiment that no other test runs goes through its measurements and has its section.
 #[test]
 fn the_other_experiments_are_measured_and_reported() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     let options = "--quick --scene talk --size 64x64 --rounds 1 --out r.jsonl";
     succeed(at, &format!("bench reprojection half-rate hard-cases foveation stream {options}"));
     let records = records(&at.join("r.jsonl"));
@@ -229,8 +225,7 @@ fn the_scenes_of_complexity_grow_in_even_steps() {
 
 #[test]
 fn mistakes_get_a_sentence() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     fs::write(at.join("other.jsonl"), "something else\n").unwrap();
     fs::write(at.join("path.json"), "[{\"position\":[0,1.6,0],\"target\":[0,1.6,-1]}]").unwrap();
     for (line, naming) in [

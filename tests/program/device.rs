@@ -6,13 +6,15 @@ use std::path::Path;
 #[cfg(unix)]
 use std::process::Stdio;
 
+use serde_json::Value;
 #[cfg(unix)]
 use yoro_devices::capture::Outcome;
 use yoro_devices::capture::{self, Capture, FaultKind};
 
+use crate::browser::{Browser, check_report};
 #[cfg(unix)]
 use crate::program::interrupt;
-use crate::program::{finish, run, succeed, yoro};
+use crate::program::{finish, folder, run, succeed, yoro};
 
 /// The experiments in the repository.
 const EXPERIMENTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../lab/devices/experiments");
@@ -35,8 +37,7 @@ fn kinds(capture: &Capture) -> Vec<FaultKind> {
 
 #[test]
 fn mistakes_are_one_sentence() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     write(at, "e.toml", SMALL);
     write(at, "bad.toml", "colour = 1\n");
     write(at, "level.toml", &SMALL.replace("[[method]]", "min-level = 95\n[[method]]"));
@@ -54,7 +55,7 @@ fn mistakes_are_one_sentence() {
         run(at, &format!("device {line}")).refuses(words);
     }
     let homeless = yoro(["device", "list"])
-        .current_dir(at)
+        .current_dir::<&Path>(at)
         .env("PATH", "")
         .env_remove("ANDROID_HOME")
         .env_remove("ANDROID_SDK_ROOT")
@@ -86,8 +87,7 @@ fn a_dry_run_is_a_plan() {
 
 #[test]
 fn a_saved_log_becomes_a_capture() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     let said = succeed(at, &format!("device logcat {RECORDED} --out kept")).stdout;
     assert!(said.contains("SIMULATED: yoro in prototype: 12 samples, 0 damaged lines"), "{said}");
     let kept = read(&at.join("kept"));
@@ -103,7 +103,7 @@ fn a_saved_log_becomes_a_capture() {
     bytes.extend_from_slice(format!("{more},gaze=0.25\n").as_bytes());
     fs::write(at.join("damaged.log"), bytes).unwrap();
     let input = fs::File::open(at.join("damaged.log")).unwrap();
-    let run = finish(yoro("device logcat - --out damaged".split(' ')).current_dir(at).stdin(input));
+    let run = finish(yoro("device logcat - --out damaged".split(' ')).current_dir::<&Path>(at).stdin(input));
     assert!(
         run.code == Some(0) && run.stdout.contains("12 samples, 2 damaged lines"),
         "{}{}",
@@ -117,6 +117,59 @@ fn a_saved_log_becomes_a_capture() {
     assert_eq!(damaged.samples.len(), 12);
     write(at, "none.log", "--------- beginning of main\n");
     crate::program::run(at, "device logcat none.log").refuses(&["none.log", "the tag YORO"]);
+}
+
+/// Captures the recorded log into a folder, as if this method had drawn this current on average.
+fn capture_recorded(at: &Path, folder: &str, method: &str, milliamperes: u32) {
+    let log = fs::read_to_string(RECORDED).unwrap().replace("scene=prototype", "scene=street");
+    let log = log.replace("method=yoro", &format!("method={method}"));
+    write(at, "made-up.log", &log.replace("mA=-512", &format!("mA=-{milliamperes}")));
+    succeed(at, &format!("device logcat made-up.log --out {folder}"));
+}
+
+#[test]
+fn captures_become_a_page_and_tables() {
+    let at = &folder();
+    capture_recorded(at, "captures/conventional", "conventional", 640);
+    capture_recorded(at, "captures/yoro", "yoro", 512);
+    let run = succeed(at, "device report captures --out out");
+    assert!(run.stdout.contains("yoro:") && run.stdout.contains("2 of 2 runs"), "{}", run.stdout);
+    let report: Value = serde_json::from_slice(&fs::read(at.join("out/report.json")).unwrap()).unwrap();
+    assert_eq!((&report["simulated"], &report["baseline"]), (&true.into(), &"conventional".into()));
+    let markdown = fs::read_to_string(at.join("out/report.md")).unwrap();
+    for needed in ["yoro: change per device", "Meta Quest 2, the paper's", "-20.0 %"] {
+        assert!(markdown.contains(needed), "{needed}: {markdown}");
+    }
+    if let Some(mut browser) = Browser::start() {
+        check_report(&mut browser, &at.join("out/report.html"));
+    }
+}
+
+#[test]
+fn folders_without_captures_are_refused() {
+    let at = &folder();
+    capture_recorded(at, "good", "yoro", 512);
+    capture_recorded(at, "damaged", "yoro", 512);
+    write(at, "damaged/run.json", "{");
+    fs::create_dir(at.join("empty")).unwrap();
+    fs::create_dir(at.join("out")).unwrap();
+    write(at, "out/report.html", "made earlier");
+    write(at, "file", "");
+    for (line, naming) in [
+        ("device report nowhere --out out", &["nowhere"][..]),
+        ("device report empty --out out", &["no capture in empty"]),
+        ("device report good damaged --out out", &["damaged/run.json is damaged"]),
+        ("device report good --out file", &["file is not a folder"]),
+        ("device report", &["<FOLDER>"]),
+    ] {
+        run(at, line).refuses(naming);
+    }
+    assert_eq!(fs::read(at.join("out/report.html")).unwrap(), b"made earlier");
+    // Without the baseline, the report has the means and says what is missing.
+    let run = succeed(at, "device report good --out out");
+    assert!(run.stdout.contains("no run of conventional"), "{}", run.stdout);
+    let again = succeed(at, "device report good --baseline yoro --out out");
+    assert!(!again.stdout.contains("no run of"), "{}", again.stdout);
 }
 
 /// A shell script that answers like the program adb.
@@ -190,8 +243,7 @@ fn fake_program(at: &Path, script: &str) {
 #[cfg(unix)]
 #[test]
 fn adb_is_called_with_the_right_arguments() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     fake_device(at);
     let list = succeed(at, "device list --adb adb").stdout;
     assert!(
@@ -245,8 +297,7 @@ fn adb_is_called_with_the_right_arguments() {
 #[cfg(unix)]
 #[test]
 fn an_experiment_goes_on_where_it_was_interrupted_or_killed() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     fake_device(at);
     write(at, "e.toml", SMALL);
     write(at, "slow", "");
@@ -267,8 +318,12 @@ fn an_experiment_goes_on_where_it_was_interrupted_or_killed() {
     assert!(matches!(read(&at.join(first)).info.outcome, Outcome::Interrupted { .. }));
 
     // A killed program cannot restore the settings. The next one does.
-    let mut child =
-        yoro(line.split(' ')).current_dir(at).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let mut child = yoro(line.split(' '))
+        .current_dir::<&Path>(at)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
     while rows(first) < 2 || !at.join(format!("{first}-cut-1")).exists() {
         assert_eq!(child.try_wait().unwrap(), None, "it has ended by itself");
         std::thread::sleep(std::time::Duration::from_millis(20));
@@ -304,8 +359,7 @@ fn fake_adb(at: &Path, script: &str) {
 #[cfg(unix)]
 #[test]
 fn a_missing_adb_server_is_not_reported_as_a_missing_device() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     // The message as quoted in flutter issue 125971.
     fake_adb(
         at,

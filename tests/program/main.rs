@@ -6,7 +6,6 @@ mod bench;
 mod compare;
 mod dataset;
 mod device;
-mod device_report;
 mod interrupt;
 mod layer;
 mod memory;

@@ -7,7 +7,7 @@ use std::process::Stdio;
 use image::RgbImage;
 
 use crate::pair;
-use crate::program::{finish, run, yoro};
+use crate::program::{finish, folder, run, yoro};
 
 fn color_and_depth(dir: &Path) {
     yoro_media::save_color(&dir.join("color.png"), &pair::color(0.5)).unwrap();
@@ -21,8 +21,7 @@ const PALETTE_OF_FOUR_BYTES: &[u8] =
 
 #[test]
 fn files_that_are_no_pictures_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     color_and_depth(at);
     let whole = fs::read(at.join("color.png")).unwrap();
     fs::write(at.join("half.png"), &whole[..whole.len() / 2]).unwrap();
@@ -55,8 +54,7 @@ fn files_that_are_no_pictures_are_refused() {
 
 #[test]
 fn files_that_are_no_scenes_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     fs::write(at.join("damaged.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 zero\nf 1 2 3\n").unwrap();
     fs::write(at.join("scene.blend"), "BLENDER").unwrap();
     for (scene, naming) in [
@@ -73,8 +71,7 @@ fn files_that_are_no_scenes_are_refused() {
 
 #[test]
 fn outputs_that_cannot_be_written() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     color_and_depth(at);
     fs::write(at.join("file"), "made earlier").unwrap();
     fs::create_dir(at.join("folder.png")).unwrap();
@@ -96,8 +93,7 @@ fn outputs_that_cannot_be_written() {
 
 #[test]
 fn options_out_of_range() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     color_and_depth(at);
     for (line, naming) in [
         ("render prototype --ipd 0.2", &["--ipd", "0.063"][..]),
@@ -125,7 +121,7 @@ fn options_out_of_range() {
     ] {
         run(at, line).refuses(naming);
     }
-    assert_eq!(fs::read_dir(at).unwrap().count(), 2, "something was written");
+    assert_eq!(fs::read_dir::<&Path>(at).unwrap().count(), 2, "something was written");
 }
 
 #[test]
@@ -177,8 +173,7 @@ fn a_closed_pipe_is_no_error() {
 
 #[test]
 fn one_process_at_a_time_appends_to_a_file() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     let held = yoro_files::append(&at.join("results.jsonl")).unwrap();
     let bench = "bench scenes --quick --rounds 1 --size 32x32 --scene prototype --out results.jsonl";
     run(at, bench).refuses(&["results.jsonl is being written by another yoro", "--out"]);

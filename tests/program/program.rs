@@ -1,6 +1,7 @@
 //! Runs the program.
 
 use std::ffi::OsStr;
+use std::ops::Deref;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::thread;
@@ -46,6 +47,22 @@ impl Run {
             assert!(!text.contains(internal), "{text}");
         }
     }
+}
+
+/// A folder that is removed after the test.
+pub struct Folder(tempfile::TempDir);
+
+impl Deref for Folder {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+/// Makes a folder for a test.
+pub fn folder() -> Folder {
+    Folder(tempfile::tempdir().unwrap())
 }
 
 /// Returns the command that runs the program with these arguments and without the tester's environment settings.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::program::{run, succeed};
+use crate::program::{folder, run, succeed};
 
 const HEADER: &str = r#"{"record":"header","yoro_bench":1,"suites":["scenes"],"quick":true,"machine":{"cpu":"a CPU","cores":2,"os":"Linux","gl_renderer":"llvmpipe","gl_version":"OpenGL ES 3.2","yoro":"0.1.0","date":"2026-01-01T00:00:00Z","command":"yoro bench scenes"},"pass_clock":"finish","parameters":[{"name":"dominant eye","value":"right"}]}"#;
 const ROUND: &str = r#"{"record":"scene","suite":"scenes","scene":"talk","stands_for":"Chat","style":"realistic","triangles":117000,"lights":3,"frames":["viewpoint 0"]}
@@ -19,8 +19,7 @@ fn write(dir: &Path, name: &str, text: &str) {
 
 #[test]
 fn files_without_results_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     write(at, "good.jsonl", &format!("{HEADER}\n{ROUND}\n"));
     write(at, "damaged.jsonl", &format!("{HEADER}\n{{\"record\":\"measure\n{ROUND}\n"));
     write(at, "begun.jsonl", &format!("{HEADER}\n{}", &ROUND[..300]));

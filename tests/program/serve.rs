@@ -18,7 +18,7 @@ use yoro_media::video::{Decoder, Index, Reader};
 use yoro_metrics::{Channels, psnr};
 use yoro_stream::{EyeView, FromClient, FromServer, Report, VERSION, ViewRequest};
 
-use crate::program::{run, succeed, yoro};
+use crate::program::{folder, run, succeed, yoro};
 
 /// A server, which is killed when this is dropped.
 struct Serving {
@@ -188,8 +188,7 @@ fn eyes_that_would_need_too_many_pixels_end_the_session_alone() {
 
 #[test]
 fn videos_with_asymmetric_eyes_are_streamed() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     succeed(
         at,
         "render prototype --frames 1 --size 64x48 --half-angles-degrees 52,42 --video wide.mp4 --quantizer 12",
@@ -232,8 +231,7 @@ fn videos_with_asymmetric_eyes_are_streamed() {
 
 #[test]
 fn a_damaged_picture_is_left_out_and_a_video_without_a_whole_one_is_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     succeed(at, "render prototype --frames 4 --size 64x48 --frame-rate 30 --video v.mp4");
     let mut file = fs::read(at.join("v.mp4")).unwrap();
     let length = file.len() as u64;
@@ -261,8 +259,7 @@ fn a_damaged_picture_is_left_out_and_a_video_without_a_whole_one_is_refused() {
 
 #[test]
 fn mistakes() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     fs::write(at.join("index.html"), "").unwrap();
     let refuses = |options: &str, naming: &[&str]| {
         run(at, &format!("serve prototype --page . {options}")).refuses(naming);

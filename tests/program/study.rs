@@ -7,7 +7,7 @@ use std::fs;
 use serde_json::Value;
 
 use crate::browser::{Browser, check_report};
-use crate::program::{run, succeed};
+use crate::program::{folder, run, succeed};
 
 /// Returns the answer of a participant who likes both methods about equally.
 fn rating(participant: usize, method: &str, scene: usize) -> f64 {
@@ -18,8 +18,7 @@ fn rating(participant: usize, method: &str, scene: usize) -> f64 {
 
 #[test]
 fn from_a_plan_to_a_report() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     let plan = "study plan --participants 6 --scenes street,atrium,talk --methods conventional,yoro --seed 4 --questions image-quality";
     succeed(at, &format!("{plan} --out plan.csv"));
     succeed(at, &format!("{plan} --out plan.json"));
@@ -86,8 +85,7 @@ fn from_a_plan_to_a_report() {
 
 #[test]
 fn mistakes() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     fs::write(at.join("empty.log"), "nothing of ours\n").unwrap();
     fs::write(at.join("one.csv"), "participant,method,scene,question,rating\nP1,yoro,street,q,3\n").unwrap();
     fs::write(at.join("plan.csv"), "made earlier").unwrap();

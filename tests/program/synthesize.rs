@@ -7,7 +7,7 @@ use image::RgbImage;
 use yoro_metrics::{Channels, Psnr, psnr};
 
 use crate::pair::{self, FOV_Y_DEGREES, IPD, RANGE};
-use crate::program::{run, succeed};
+use crate::program::{folder, run, succeed};
 
 fn eyes() -> String {
     format!("--fov-y-degrees {FOV_Y_DEGREES} --ipd {IPD}")
@@ -136,8 +136,7 @@ fn folders() {
 
 #[test]
 fn depth_without_meaning_is_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     yoro_media::save_color(&at.join("color.png"), &pair::color(0.5)).unwrap();
     let mut depth = pair::reversed(0.5, 1.0);
     yoro_media::save_depth(&at.join("depth.exr"), &depth).unwrap();

@@ -6,12 +6,11 @@ use image::{RgbImage, imageops};
 use yoro_media::video::{Reader, VideoError};
 use yoro_metrics::{Channels, psnr};
 
-use crate::program::{run, succeed};
+use crate::program::{folder, run, succeed};
 
 #[test]
 fn both_eyes_come_out_of_an_rgbd_video() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     let scene = "render prototype --frames 4 --size 128x96";
     let said = succeed(at, &format!("{scene} --video rgbd.mp4 --frame-rate 24 --quantizer 16")).stdout;
     assert!(said.starts_with("rgbd.mp4: 4 frames, ") && said.contains("kbit/s, depth from "), "{said}");
@@ -22,7 +21,7 @@ fn both_eyes_come_out_of_an_rgbd_video() {
 
     let mut stereo = Reader::open(&at.join("stereo.mp4")).unwrap();
     assert_eq!((stereo.frames(), stereo.frame_rate()), (4, 24));
-    assert!(matches!(stereo.rgbd(), Err(VideoError::NoDepth { .. })));
+    assert!(matches!(stereo.rgbd(), Err(VideoError::NoDepth(_))));
     for frame in 0..4 {
         let both = stereo.read().unwrap().unwrap().rgb((256, 96));
         let shown = |x: u32| -> RgbImage { imageops::crop_imm(&both, x, 0, 128, 96).to_image() };
@@ -43,8 +42,7 @@ fn both_eyes_come_out_of_an_rgbd_video() {
 /// One eye sees farther outwards, or inwards, than the other.
 #[test]
 fn eyes_with_asymmetric_frusta_come_out_of_an_rgbd_video() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     for (name, eyes) in
         [("wide", "--half-angles-degrees 52,42"), ("narrow", "--half-angles-degrees 35,47 --dominant left")]
     {
@@ -67,8 +65,7 @@ fn eyes_with_asymmetric_frusta_come_out_of_an_rgbd_video() {
 
 #[test]
 fn mistakes() {
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     fs::write(at.join("a.mp4"), "no video").unwrap();
     run(at, "synthesize none.mp4 --out o.mp4").refuses(&["none.mp4 does not exist"]);
     run(at, "synthesize a.mp4 --out o.mp4").refuses(&["a.mp4 cannot be read as a video", "H.264"]);

@@ -34,8 +34,7 @@ pub fn test() -> anyhow::Result<()> {
             let folder = target_folder()?.join("bevy-tests");
             remove(&folder)?;
             make_parent(&folder.join("runtime.log"))?;
-            let _runtime =
-                monado::start(&programs.join("monado-service"), &folder).map_err(anyhow::Error::msg)?;
+            let _runtime = monado::start(&programs.join("monado-service"), &folder)?;
             let runner = format!("target.'cfg(all())'.runner=[{:?}]", programs.join("run"));
             let drivers = monado::make()?.join("root/usr/share/vulkan/icd.d/lvp_icd.json");
             let environment = [

@@ -154,23 +154,17 @@ pub unsafe fn text(string: *const c_char) -> String {
 /// stored elsewhere, and these bytes hold its address.
 type Attributes = *mut *mut libc::pthread_attr_t;
 
-/// # Safety
-/// `attributes` must have room for a pointer, and must not hold anything that has to be released.
-unsafe fn new_attributes(attributes: Attributes) -> *mut libc::pthread_attr_t {
-    // SAFETY: this is plain data for which zero is valid. All of glibc's functions that get it fill it in first.
-    let new = Box::into_raw(Box::new(unsafe { std::mem::zeroed::<libc::pthread_attr_t>() }));
-    // SAFETY: the caller gives room for one pointer.
-    unsafe { attributes.write(new) };
-    new
-}
-
 unsafe extern "C" fn pthread_attr_init(attributes: Attributes) -> c_int {
-    // SAFETY: the caller gives room for the new object.
-    unsafe { libc::pthread_attr_init(new_attributes(attributes)) }
+    // SAFETY: this is plain data for which zero is valid, and the caller gives room for one pointer.
+    unsafe {
+        let new = Box::into_raw(Box::new(std::mem::zeroed::<libc::pthread_attr_t>()));
+        attributes.write(new);
+        libc::pthread_attr_init(new)
+    }
 }
 
 unsafe extern "C" fn pthread_attr_destroy(attributes: Attributes) -> c_int {
-    // SAFETY: made by one of the two functions above, and not destroyed before.
+    // SAFETY: made by the function above, and not destroyed before.
     unsafe {
         let result = libc::pthread_attr_destroy(*attributes);
         drop(Box::from_raw(attributes.replace(std::ptr::null_mut())));
@@ -469,7 +463,7 @@ unsafe extern "C" fn dladdr(address: *const c_void, info: *mut libc::Dl_info) ->
             unsafe {
                 info.write(libc::Dl_info {
                     dli_fname: library.path.as_ptr(),
-                    dli_fbase: library.base() as *mut c_void,
+                    dli_fbase: library.base as *mut c_void,
                     dli_sname: std::ptr::null(),
                     dli_saddr: std::ptr::null_mut(),
                 });
@@ -487,10 +481,10 @@ unsafe extern "C" fn dl_iterate_phdr(visit: VisitLibrary, data: *mut c_void) -> 
     for library in host().libraries() {
         // SAFETY: the structure is plain data for which zero is valid.
         let mut info: libc::dl_phdr_info = unsafe { std::mem::zeroed() };
-        info.dlpi_addr = library.base() as _;
+        info.dlpi_addr = library.base as _;
         info.dlpi_name = library.path.as_ptr();
-        info.dlpi_phdr = library.program_headers().as_ptr().cast();
-        info.dlpi_phnum = (library.program_headers().len() / 56) as _;
+        info.dlpi_phdr = library.program_headers.as_ptr().cast();
+        info.dlpi_phnum = (library.program_headers.len() / 56) as _;
         // SAFETY: the caller's function, with a structure that lives during the call.
         let result = unsafe { visit(&raw mut info, size_of_val(&info), data) };
         if result != 0 {

@@ -12,7 +12,8 @@ use crate::threads;
 /// The clock that the application sees: time since boot in nanoseconds.
 pub struct Clock {
     now: AtomicU64,
-    period: u64,
+    /// The time between two refreshes in nanoseconds.
+    pub period: u64,
     slept: u64,
     realtime_offset: u64,
     waiting: Mutex<BTreeMap<u64, u64>>,
@@ -112,11 +113,6 @@ impl Clock {
         let number = self.last_wait.fetch_add(1, Ordering::Relaxed);
         lock(&self.waiting).insert(number, instant);
         Wait { clock: self, number, instant }
-    }
-
-    /// Returns the time between two refreshes in nanoseconds.
-    pub fn period(&self) -> u64 {
-        self.period
     }
 
     /// Returns the time of the first refresh after `instant`.

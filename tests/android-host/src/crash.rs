@@ -40,7 +40,7 @@ fn in_library(address: usize) -> Option<String> {
     let library = host().libraries().find(|library| library.is_code(address))?;
     let path = library.path.to_string_lossy();
     let file = path.rsplit('/').next().unwrap_or_default();
-    Some(format!("{file}+{:#x}", address - library.base()))
+    Some(format!("{file}+{:#x}", address - library.base))
 }
 
 /// Returns the program counter.

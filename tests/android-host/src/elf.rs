@@ -2,12 +2,10 @@
 //! relocations, which no library of ours has, are not supported.
 
 use anyhow::{Context, Result, bail, ensure};
-use goblin::elf::Elf;
 use goblin::elf::dynamic::{DF_TEXTREL, DT_REL};
 use goblin::elf::header::ET_DYN;
-use goblin::elf::program_header::{PT_GNU_RELRO, PT_LOAD, PT_TLS, ProgramHeader, program_header64};
-use goblin::elf::section_header::SHN_UNDEF;
-use goblin::elf::sym::STB_WEAK;
+use goblin::elf::program_header::{PT_LOAD, PT_TLS, ProgramHeader, program_header64};
+use goblin::elf::{Elf, Sym};
 
 /// The page size of newer Android devices.
 pub const PAGE: u64 = 0x4000;
@@ -41,38 +39,14 @@ pub fn pages(segment: &ProgramHeader) -> Result<(u64, u64)> {
     Ok((segment.p_vaddr & !(PAGE - 1), end))
 }
 
-/// A symbol of the dynamic table.
-pub struct Symbol<'a> {
-    /// The name, empty for the first symbol, which stands for none.
-    pub name: &'a str,
-    /// True if the symbol may remain undefined.
-    pub weak: bool,
-    /// The address in the library, if the library defines the symbol.
-    pub defined: Option<u64>,
-}
-
-/// One relocation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Relocation {
-    /// The address in the library.
-    pub at: u64,
-    /// The type, one of the machine's `R_*`.
-    pub kind: u32,
-    /// The index in the dynamic symbol table.
-    pub symbol: usize,
-    /// The value added to the symbol's address.
-    pub addend: i64,
-}
-
 /// The description of a shared library in its file, which has been checked.
 pub struct Image<'a> {
     /// The content of the file.
     pub file: &'a [u8],
-    /// All symbols of the dynamic table, by index.
-    pub symbols: Vec<Symbol<'a>>,
-    /// All relocations.
-    pub relocations: Vec<Relocation>,
-    elf: Elf<'a>,
+    /// The names and entries of the dynamic symbol table, by index. The first one has no name and stands for none.
+    pub symbols: Vec<(&'a str, Sym)>,
+    /// The parsed file.
+    pub elf: Elf<'a>,
 }
 
 impl<'a> Image<'a> {
@@ -93,14 +67,17 @@ impl<'a> Image<'a> {
         if dynamic.info.textrel || dynamic.info.flags & DF_TEXTREL != 0 {
             bail!("it has text relocations, which Android refuses");
         }
-        let mut image = Self { file, symbols: Vec::new(), relocations: Vec::new(), elf };
+        let name = |symbol: Sym| {
+            let name = elf.dynstrtab.get_at(symbol.st_name);
+            Ok((name.context("a name lies outside of the string table")?, symbol))
+        };
+        let symbols = elf.dynsyms.iter().map(name).collect::<Result<_>>()?;
+        let image = Self { file, symbols, elf };
         let has_other = [DT_REL].iter().chain(&PACKED).any(|tag| image.tag(*tag).is_some());
         ensure!(
             !has_other,
             "it has packed relocations or some without addends, which the host does not read"
         );
-        image.symbols = image.read_symbols()?;
-        image.relocations = image.read_relocations();
         Ok(image)
     }
 
@@ -109,60 +86,10 @@ impl<'a> Image<'a> {
         self.elf.program_headers.iter().filter(|segment| segment.p_type == PT_LOAD)
     }
 
-    /// Returns the segment that becomes read-only after the relocations.
-    pub fn relro(&self) -> Option<&ProgramHeader> {
-        self.elf.program_headers.iter().find(|segment| segment.p_type == PT_GNU_RELRO)
-    }
-
-    /// Returns the file names of the libraries that this one needs.
-    pub fn needed(&self) -> &[&'a str] {
-        &self.elf.libraries
-    }
-
-    /// Returns the program headers as bytes of the file.
-    pub fn program_headers(&self) -> &'a [u8] {
-        let start = self.elf.header.e_phoff as usize;
-        &self.file[start..start + self.elf.program_headers.len() * program_header64::SIZEOF_PHDR]
-    }
-
     /// Returns the last value of a tag in the dynamic section.
     pub fn tag(&self, tag: u64) -> Option<u64> {
         let entries = &self.elf.dynamic.as_ref()?.dyns;
         entries.iter().rev().find(|entry| entry.d_tag == tag).map(|entry| entry.d_val)
-    }
-
-    /// Returns the file offset of an address in the library.
-    ///
-    /// # Errors
-    /// Fails if the address is not in a segment.
-    pub fn offset(&self, address: u64) -> Result<usize> {
-        self.loads()
-            .find(|segment| address.checked_sub(segment.p_vaddr).is_some_and(|at| at < segment.p_filesz))
-            .map(|segment| (address - segment.p_vaddr + segment.p_offset) as usize)
-            .with_context(|| format!("address {address:#x} lies in no segment"))
-    }
-
-    fn read_symbols(&self) -> Result<Vec<Symbol<'a>>> {
-        let read = |symbol: goblin::elf::Sym| {
-            let name = self.elf.dynstrtab.get_at(symbol.st_name);
-            Ok(Symbol {
-                name: name.context("a name lies outside of the string table")?,
-                weak: symbol.st_bind() == STB_WEAK,
-                defined: (symbol.st_shndx != SHN_UNDEF as usize).then_some(symbol.st_value),
-            })
-        };
-        self.elf.dynsyms.iter().map(read).collect()
-    }
-
-    fn read_relocations(&self) -> Vec<Relocation> {
-        let tables = self.elf.dynrelas.iter().chain(self.elf.pltrelocs.iter());
-        let relocation = |relocation: goblin::elf::Reloc| Relocation {
-            at: relocation.r_offset,
-            kind: relocation.r_type,
-            symbol: relocation.r_sym,
-            addend: relocation.r_addend.unwrap_or(0),
-        };
-        tables.map(relocation).collect()
     }
 }
 

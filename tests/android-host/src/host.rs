@@ -149,11 +149,7 @@ impl Host {
         };
         anyhow::ensure!(HOST.set(host).is_ok(), "a process can play one device only");
         std::thread::Builder::new().name("host-watch".into()).spawn(watch)?;
-        Ok(Self::get())
-    }
-
-    fn get() -> &'static Self {
-        host()
+        Ok(self::host())
     }
 
     /// Returns the libraries that Android's linker would have loaded.

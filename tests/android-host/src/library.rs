@@ -6,8 +6,11 @@ use std::ffi::{CString, c_void};
 use std::ops::Range;
 
 use anyhow::{Context, Result, bail, ensure};
+use goblin::elf::Sym;
 use goblin::elf::dynamic::{DT_INIT, DT_INIT_ARRAY, DT_INIT_ARRAYSZ};
-use goblin::elf::program_header::{PF_R, PF_W, PF_X};
+use goblin::elf::program_header::{PF_R, PF_W, PF_X, PT_GNU_RELRO, ProgramHeader, program_header64};
+use goblin::elf::section_header::SHN_UNDEF;
+use goblin::elf::sym::STB_WEAK;
 
 use crate::elf::{Image, PAGE, machine, pages};
 use crate::exports::System;
@@ -17,9 +20,11 @@ use crate::thunk;
 pub struct Library {
     /// The path that `dladdr` reports.
     pub path: CString,
-    base: usize,
+    /// The start of the mapping.
+    pub base: usize,
     span: usize,
-    program_headers: Vec<u8>,
+    /// The program headers, as in the file.
+    pub program_headers: Vec<u8>,
     symbols: BTreeMap<String, usize>,
     code: Vec<Range<usize>>,
     init: Vec<usize>,
@@ -41,7 +46,7 @@ impl Library {
     /// Fails with one sentence on what Android or the host would reject.
     pub fn load(name: &str, file: &[u8], find: impl Fn(System, &str) -> Option<usize>) -> Result<Loaded> {
         let image = Image::parse(file).with_context(|| format!("{name} cannot be loaded"))?;
-        let needed = image.needed().iter().map(|library| {
+        let needed = image.elf.libraries.iter().map(|library| {
             System::named(library).with_context(|| {
                 format!("{name} needs {library}, which is no public library known to the host")
             })
@@ -55,7 +60,10 @@ impl Library {
         let init = constructors(&image, base)?;
         protect(&image, base)?;
         let exports = image.symbols.iter();
-        let exports = exports.filter_map(|it| Some((it.name.to_owned(), base + it.defined? as usize)));
+        let exports =
+            exports.filter_map(|(name, symbol)| Some(((*name).to_owned(), base + defined(symbol)?)));
+        let headers = image.elf.header.e_phoff as usize;
+        let headers = headers..headers + image.elf.program_headers.len() * program_header64::SIZEOF_PHDR;
         let code = image.loads().filter(|segment| segment.p_flags & PF_X != 0).map(|segment| {
             let start = base + segment.p_vaddr as usize;
             start..start + segment.p_memsz as usize
@@ -64,7 +72,7 @@ impl Library {
             path: CString::new(format!("/data/app/base.apk!/{name}"))?,
             base,
             span: span as usize,
-            program_headers: image.program_headers().to_vec(),
+            program_headers: image.file[headers].to_vec(),
             symbols: exports.collect(),
             code: code.collect(),
             init,
@@ -90,11 +98,6 @@ impl Library {
         self.symbols.get(name).copied()
     }
 
-    /// Returns the start of the mapping.
-    pub fn base(&self) -> usize {
-        self.base
-    }
-
     /// True if the address lies in the library.
     pub fn contains(&self, address: usize) -> bool {
         (self.base..self.base + self.span).contains(&address)
@@ -104,11 +107,11 @@ impl Library {
     pub fn is_code(&self, address: usize) -> bool {
         self.code.iter().any(|range| range.contains(&address))
     }
+}
 
-    /// Returns the program headers, as in the file.
-    pub fn program_headers(&self) -> &[u8] {
-        &self.program_headers
-    }
+/// Returns the address of a symbol in its library, if the library defines it.
+fn defined(symbol: &Sym) -> Option<usize> {
+    (symbol.st_shndx != SHN_UNDEF as usize).then_some(symbol.st_value as usize)
 }
 
 /// Maps the segments as a kernel with 16 KiB pages would, for now writable, and returns the start of the library.
@@ -149,19 +152,19 @@ fn bind(
 ) -> Result<(Vec<usize>, Vec<String>)> {
     let mut values = vec![0; image.symbols.len()];
     let mut missing = Vec::new();
-    for (index, symbol) in image.symbols.iter().enumerate().skip(1) {
-        let finds = |library: &System| find(*library, symbol.name);
-        if let Some(address) = symbol.defined {
-            values[index] = base + address as usize;
+    for (index, (name, symbol)) in image.symbols.iter().enumerate().skip(1) {
+        let finds = |library: &System| find(*library, name);
+        if let Some(address) = defined(symbol) {
+            values[index] = base + address;
         } else if let Some(address) = needed.iter().find_map(finds) {
             values[index] = address;
         } else if let Some(library) = System::ALL.into_iter().find(|library| finds(library).is_some()) {
-            bail!("{} comes from {}, which the library does not name as needed", symbol.name, library.0);
-        } else if !symbol.weak {
+            bail!("{name} comes from {}, which the library does not name as needed", library.0);
+        } else if symbol.st_bind() != STB_WEAK {
             missing.push(index);
         }
     }
-    let names: Vec<_> = missing.iter().map(|index| image.symbols[*index].name.to_owned()).collect();
+    let names: Vec<_> = missing.iter().map(|index| image.symbols[*index].0.to_owned()).collect();
     for (index, address) in missing.into_iter().zip(thunk::traps(&names)?) {
         values[index] = address;
     }
@@ -170,23 +173,24 @@ fn bind(
 
 /// Applies the relocations. `values` are the values of the symbols.
 fn relocate(image: &Image, base: usize, values: &[usize]) -> Result<()> {
-    for relocation in &image.relocations {
-        let value = match relocation.kind {
+    for relocation in image.elf.dynrelas.iter().chain(&image.elf.pltrelocs) {
+        let at = relocation.r_offset;
+        let value = match relocation.r_type {
             machine::RELATIVE => base,
             machine::ABSOLUTE | machine::GLOB_DAT | machine::JUMP_SLOT => {
-                *values.get(relocation.symbol).context("a relocation names a symbol that is not there")?
+                *values.get(relocation.r_sym).context("a relocation names a symbol that is not there")?
             }
             other => bail!("a relocation has the type {other}, which the host does not know"),
         };
-        let end = relocation.at.checked_add(8).context("a relocation wraps around")?;
+        let end = at.checked_add(8).context("a relocation wraps around")?;
         let is_writable = image.loads().any(|segment| {
             let range = segment.p_vaddr..=segment.p_vaddr + segment.p_memsz;
-            segment.p_flags & PF_W != 0 && range.contains(&relocation.at) && range.contains(&end)
+            segment.p_flags & PF_W != 0 && range.contains(&at) && range.contains(&end)
         });
         ensure!(is_writable, "a relocation lies outside of the writable segments");
-        let value = (value as u64).wrapping_add_signed(relocation.addend);
+        let value = (value as u64).wrapping_add_signed(relocation.r_addend.unwrap_or(0));
         // SAFETY: the address was checked to be in a segment that `map` has made writable.
-        unsafe { ((base as u64 + relocation.at) as *mut u64).write_unaligned(value) };
+        unsafe { ((base as u64 + at) as *mut u64).write_unaligned(value) };
     }
     Ok(())
 }
@@ -196,7 +200,9 @@ fn constructors(image: &Image, base: usize) -> Result<Vec<usize>> {
     let mut init: Vec<_> = image.tag(DT_INIT).map(|init| base + init as usize).into_iter().collect();
     let [start, length] = [DT_INIT_ARRAY, DT_INIT_ARRAYSZ].map(|tag| image.tag(tag).unwrap_or(0));
     for at in (start..start.saturating_add(length)).step_by(8) {
-        image.offset(at)?;
+        let is_in =
+            |segment: &ProgramHeader| (segment.p_vaddr..segment.p_vaddr + segment.p_filesz).contains(&at);
+        ensure!(image.loads().any(is_in), "address {at:#x} lies in no segment");
         // SAFETY: the address is in a mapped segment, and the relocations have filled in the table.
         init.push(unsafe { ((base as u64 + at) as *const usize).read_unaligned() });
     }
@@ -210,7 +216,8 @@ fn protect(image: &Image, base: usize) -> Result<()> {
         let bits = bits.into_iter().filter(|(flag, _)| segment.p_flags & flag != 0);
         protect_range(base, first, last, bits.fold(0, |all, (_, bit)| all | bit))?;
     }
-    if let Some(relro) = image.relro() {
+    // The segment that becomes read-only after the relocations.
+    if let Some(relro) = image.elf.program_headers.iter().find(|segment| segment.p_type == PT_GNU_RELRO) {
         protect_range(base, relro.p_vaddr & !(PAGE - 1), relro.p_vaddr + relro.p_memsz, libc::PROT_READ)?;
     }
     Ok(())

@@ -13,7 +13,7 @@ use crate::android::looper::{self, ALooper};
 use crate::host::{Host, fatal, host, lock};
 use crate::jni;
 use crate::random;
-use crate::script::{Battery, Key, Step, Thermal};
+use crate::script::{Key, Step};
 use crate::threads;
 
 /// The state of the activity that the script has reached.
@@ -90,7 +90,7 @@ impl Player {
     }
 
     fn step(&mut self, step: &Step) {
-        if self.host.log.is_verbose() {
+        if self.host.log.verbose {
             self.host.say(&format!("{:9.3} step: {step:?}", self.host.clock.seconds()));
         }
         match step {
@@ -167,9 +167,9 @@ impl Player {
                     self.seconds(*seconds);
                 }
             }
-            Step::Battery(battery) => self.battery(Some(battery.clone())),
-            Step::BatteryMissing => self.battery(None),
-            Step::Thermal(thermal) => self.thermal(thermal),
+            Step::Battery(battery) => *lock(&self.host.battery) = Some(battery.clone()),
+            Step::BatteryMissing => *lock(&self.host.battery) = None,
+            Step::Thermal(thermal) => *lock(&self.host.thermal) = thermal.clone(),
             Step::Camera(picture) => self.host.camera.see(picture.clone()),
             Step::CameraLost => self.host.camera.take(),
             Step::Permission(is_allowed) => self.answer(*is_allowed),
@@ -260,12 +260,12 @@ impl Player {
                 vm: jni::virtual_machine(),
                 env: jni::environment(),
                 clazz: jni::activity_reference(),
-                internalDataPath: host.directories.internal().as_ptr(),
-                externalDataPath: host.directories.external().as_ptr(),
+                internalDataPath: host.directories.internal.as_ptr(),
+                externalDataPath: host.directories.external.as_ptr(),
                 sdkVersion: host.device.sdk,
                 instance: std::ptr::null_mut(),
                 assetManager: std::ptr::dangling(),
-                obbPath: host.directories.external().as_ptr(),
+                obbPath: host.directories.external.as_ptr(),
             },
             callbacks: Callbacks::default(),
         }));
@@ -478,14 +478,6 @@ impl Player {
 
     fn finish_asked(&self) -> bool {
         self.host.finish_asked.load(Ordering::Acquire)
-    }
-
-    fn battery(&mut self, battery: Option<Battery>) {
-        *lock(&self.host.battery) = battery;
-    }
-
-    fn thermal(&mut self, thermal: &Thermal) {
-        *lock(&self.host.thermal) = thermal.clone();
     }
 
     fn capture(&mut self, name: PathBuf) {

@@ -10,7 +10,7 @@ use yoro_media::video::{Format, Planes, Rgbd, VideoError};
 use yoro_metrics::{Channels, psnr};
 
 use super::{Page, sum};
-use crate::program::succeed;
+use crate::program::{folder, succeed};
 
 const SIZE: [u32; 2] = [192, 128];
 const FRAMES: u32 = 6;
@@ -18,8 +18,7 @@ const FRAMES: u32 = 6;
 #[test]
 fn an_rgbd_video_plays_over_and_over_until_it_is_paused() {
     let Some(mut page) = Page::open("#display=side-by-side", None) else { return };
-    let dir = tempfile::tempdir().unwrap();
-    let at = dir.path();
+    let at = &folder();
     let scene = format!("render prototype --frames {FRAMES} --size {}x{}", SIZE[0], SIZE[1]);
     succeed(at, &format!("{scene} --video rgbd.mp4 --frame-rate 6 --quantizer 16"));
     succeed(at, &format!("{scene} --method conventional --outputs left,right --out truth"));

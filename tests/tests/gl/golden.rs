@@ -8,7 +8,8 @@ use yoro_context::Headless;
 use yoro_gl::Context;
 use yoro_render::stereo::{Method, Pipeline, StereoFrame, StereoOptions, StereoSession, stills};
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_tests::{backends, golden};
+use yoro_test_support::laws::backends;
+use yoro_tests::golden;
 
 const SIZE: u32 = 256;
 
@@ -78,8 +79,8 @@ fn a_foveated_eye_gives_its_golden_image() -> anyhow::Result<()> {
 #[test]
 fn backends_agree_on_every_pipeline() {
     let frames: Vec<_> = backends()
-        .into_iter()
-        .map(|backend| {
+        .iter()
+        .map(|&backend| {
             let headless = Headless::open(backend).unwrap();
             render(headless.gl(), "prototype", &Pipeline::ALL).unwrap()
         })

@@ -8,7 +8,8 @@ use yoro_context::Headless;
 use yoro_gl::Context;
 use yoro_render::stereo::{ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions, StereoSession};
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_tests::{backends, is_tested, scene};
+use yoro_test_support::laws::backends;
+use yoro_tests::{is_tested, scene};
 
 /// Returns every way to render a frame, by name.
 fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, StereoOptions)> {
@@ -56,7 +57,7 @@ fn pair(frame: u32, dominant: Eye) -> EyePair {
 
 #[test]
 fn thirty_frames_hold_as_many_objects_as_ten() {
-    for backend in backends() {
+    for &backend in backends() {
         let headless = Headless::open(backend).unwrap();
         let gl = headless.gl();
         for settings in settings() {

@@ -6,7 +6,8 @@ use yoro_assets::ShadingStyle;
 use yoro_context::Headless;
 use yoro_render::stereo::{Method, StereoFrame, StereoOptions, StereoSession};
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_tests::{backends, scene};
+use yoro_test_support::laws::backends;
+use yoro_tests::scene;
 
 #[test]
 fn canted_eyes_are_rendered_but_not_synthesized() {

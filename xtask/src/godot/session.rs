@@ -95,6 +95,6 @@ impl Session {
 
     /// Starts the runtime. Programs with the same folder find it.
     pub fn runtime(&self, folder: &Path) -> anyhow::Result<Running> {
-        monado::start(&self.godot.join("monado-service"), folder).map_err(anyhow::Error::msg)
+        monado::start(&self.godot.join("monado-service"), folder)
     }
 }

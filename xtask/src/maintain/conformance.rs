@@ -87,7 +87,7 @@ fn run(
     remove(place)?;
     make(place)?;
     let (result, log) = (place.join("result.xml"), File::create(place.join("log"))?);
-    let _service = monado::start(&programs.join("monado-service"), place).map_err(anyhow::Error::msg)?;
+    let _service = monado::start(&programs.join("monado-service"), place)?;
     command.arg("./conformance_cli").args([
         "exclude:[interactive]",
         "-T",

@@ -5,10 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
-
-use super::monado::{unpack_with_needs, write_launcher};
-use crate::folders::{make_once, target_folder};
+use super::monado::{fetch, write_launcher};
 
 const RELEASE: &str = "sid";
 const PACKAGES: [&str; 6] = [
@@ -22,15 +19,7 @@ const PACKAGES: [&str; 6] = [
 
 /// Returns the folder of the launcher and of the root. Fetches and unpacks them unless the folder is complete.
 pub(crate) fn make() -> anyhow::Result<PathBuf> {
-    if !cfg!(target_arch = "x86_64") {
-        bail!("it is fetched for x86_64 only");
-    }
-    let folder = target_folder()?.join("direct3d");
-    let root = folder.join("root");
-    make_once(&folder, &format!("{RELEASE} {}\n", PACKAGES.join(" ")), || {
-        eprintln!("fetching vkd3d and DXVK for the tests: 110 MB, once");
-        unpack_with_needs(&folder, &root, RELEASE, &PACKAGES.map(str::to_owned))
-    })?;
+    let (folder, root) = fetch("direct3d", RELEASE, &PACKAGES, "vkd3d and DXVK for the tests: 110 MB")?;
     let launcher = include_str!("launchers/direct3d.sh");
     write_launcher(&folder.join("run"), launcher, &root, &[], Path::new(""))?;
     Ok(folder)

@@ -7,10 +7,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::bail;
-
 use super::monado;
-use crate::folders::{make_once, target_folder};
 
 const RELEASE: &str = "sid";
 /// The runtime and the application must have the same version.
@@ -29,15 +26,7 @@ pub fn usage() -> anyhow::Result<String> {
 
 /// Returns the folder with the programs `godot` and `monado-service`. Fetches and unpacks what is missing.
 pub fn make() -> anyhow::Result<PathBuf> {
-    if !cfg!(target_arch = "x86_64") {
-        bail!("it is fetched for x86_64 only");
-    }
-    let folder = target_folder()?.join("godot");
-    let root = folder.join("root");
-    make_once(&folder, &format!("{RELEASE} {}\n", PACKAGES.join(" ")), || {
-        eprintln!("fetching Godot for its tests: 200 MB, once");
-        monado::unpack_with_needs(&folder, &root, RELEASE, &PACKAGES.map(str::to_owned))
-    })?;
+    let (folder, root) = monado::fetch("godot", RELEASE, &PACKAGES, "Godot for its tests: 200 MB")?;
     let program = root.join("usr/bin/godot");
     monado::write_launcher(&folder.join("godot"), monado::APPLICATION, &root, &[], &program)?;
     monado::write_service(&folder, &root)?;

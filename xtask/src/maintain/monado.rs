@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 
 use crate::folders::{make_once, target_folder};
 use crate::packages::{PrivateApt, debian_sources, fill_launcher, quoted};
@@ -61,30 +61,32 @@ pub(crate) fn make() -> anyhow::Result<PathBuf> {
     /// Locked, since [`hello_xr`](super::hello_xr) sets up Monado as well.
     static TURN: Mutex<()> = Mutex::new(());
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-    if !cfg!(target_arch = "x86_64") {
-        bail!("it is fetched for x86_64 only");
-    }
-    let folder = target_folder()?.join("monado");
-    let root = folder.join("root");
-    let packages: Vec<String> = MONADO.iter().chain(&MESA).map(|&package| package.to_owned()).collect();
-    make_once(&folder, &format!("{RELEASE} {}\n", packages.join(" ")), || {
-        eprintln!("fetching Monado for the tests: 170 MB, once");
-        unpack_with_needs(&folder, &root, RELEASE, &packages)
-    })?;
+    let packages = [&MONADO[..], &MESA].concat();
+    let (folder, root) = fetch("monado", RELEASE, &packages, "Monado for the tests: 170 MB")?;
     write_service(&folder, &root)?;
     write_launcher(&folder.join("run"), RUN, &root, &[], Path::new(""))?;
     Ok(folder)
 }
 
-/// Unpacks packages of a Debian release, with all dependencies, into `root`. Downloads go to `folder` meanwhile.
-pub(crate) fn unpack_with_needs(
-    folder: &Path,
-    root: &Path,
+/// Unpacks packages of a Debian release, with all dependencies, unless they have been. Returns the folder of this name for
+/// what is made of them, and their root in it.
+pub(crate) fn fetch(
+    name: &str,
     release: &str,
-    packages: &[String],
-) -> anyhow::Result<()> {
-    let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[release])?))?;
-    apt.unpack(packages, root, &WITHOUT)
+    packages: &[&str],
+    what: &str,
+) -> anyhow::Result<(PathBuf, PathBuf)> {
+    if !cfg!(target_arch = "x86_64") {
+        bail!("it is fetched for x86_64 only");
+    }
+    let folder = target_folder()?.join(name);
+    let root = folder.join("root");
+    make_once(&folder, &format!("{release} {}\n", packages.join(" ")), || {
+        eprintln!("fetching {what}, once");
+        let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[release])?))?;
+        apt.unpack(&packages.iter().map(|package| package.to_string()).collect::<Vec<_>>(), &root, &WITHOUT)
+    })?;
+    Ok((folder, root))
 }
 
 /// Writes a launcher from its template. It runs a program with the libraries in `first`, then those of this root, which has
@@ -124,7 +126,7 @@ impl Drop for Running {
 }
 
 /// Starts the service. Programs with `folder` as XDG_RUNTIME_DIR find it. Its log is `service.log` in that folder.
-pub fn start(service: &Path, folder: &Path) -> Result<Running, String> {
+pub fn start(service: &Path, folder: &Path) -> anyhow::Result<Running> {
     let name = service.display();
     let path = folder.join("service.log");
     let spawn = || {
@@ -133,12 +135,12 @@ pub fn start(service: &Path, folder: &Path) -> Result<Running, String> {
         command.env("XDG_RUNTIME_DIR", folder).stdin(Stdio::null());
         command.stdout(log.try_clone()?).stderr(log).spawn()
     };
-    let mut running = Running(spawn().map_err(|error| format!("{name} cannot be started: {error}"))?);
+    let mut running = Running(spawn().with_context(|| format!("{name} cannot be started"))?);
     let start = Instant::now();
     while !folder.join("monado_comp_ipc").exists() {
         let has_ended = running.0.try_wait().is_ok_and(|status| status.is_some());
         if has_ended || start.elapsed() > TIMEOUT {
-            return Err(format!("{name} does not start: {}", fs::read_to_string(&path).unwrap_or_default()));
+            bail!("{name} does not start: {}", fs::read_to_string(&path).unwrap_or_default());
         }
         thread::sleep(Duration::from_millis(50));
     }

@@ -2,54 +2,43 @@
 
 use std::fmt::Display;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// An error of reading a scene, as one sentence that names the file and the remedy.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SceneError {
-    /// The operating system refused to read.
-    #[error("{path} cannot be read ({source}): check its permissions and the disk")]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// The file is missing, damaged, too large, or uses something unsupported.
-    #[error("{0}")]
-    Unusable(String),
-}
+#[error("{0}")]
+pub struct SceneError(pub(super) String);
 
 impl SceneError {
+    /// The operating system refused to read.
     pub(super) fn read(path: &Path) -> impl Fn(io::Error) -> SceneError {
-        move |source| SceneError::Read { path: path.into(), source }
+        move |reason| {
+            let path = path.display();
+            SceneError(format!("{path} cannot be read ({reason}): check its permissions and the disk"))
+        }
     }
 
     /// `what` contains the remedy.
     pub(super) fn unusable(path: &Path, what: impl Display) -> SceneError {
-        SceneError::Unusable(format!("{}: {what}", path.display()))
+        SceneError(format!("{}: {what}", path.display()))
     }
 
     /// The file contains nothing to draw.
     pub(super) fn empty(path: &Path) -> SceneError {
         let path = path.display();
-        SceneError::Unusable(format!(
+        SceneError(format!(
             "{path} contains no triangle that can be drawn: export the model again with its faces"
         ))
     }
 
     /// The file has more than fits into 32-bit indices and memory.
     pub(super) fn too_large(path: &Path, limit: usize, what: &str) -> SceneError {
-        SceneError::Unusable(format!(
-            "{} has more than {limit} {what}: split the model or reduce it",
-            path.display()
-        ))
+        SceneError(format!("{} has more than {limit} {what}: split the model or reduce it", path.display()))
     }
 
     /// A `camera.json` or `scene.json` is malformed.
     pub(super) fn sidecar(path: &Path, what: impl Display) -> SceneError {
-        SceneError::Unusable(format!(
+        SceneError(format!(
             "{} is malformed ({what}): correct it, or remove it to get defaults",
             path.display()
         ))
@@ -57,7 +46,7 @@ impl SceneError {
 
     /// A texture exists but cannot be decoded.
     pub(super) fn texture(path: &Path, what: impl Display) -> SceneError {
-        SceneError::Unusable(format!(
+        SceneError(format!(
             "the texture {} cannot be used ({what}): replace it, or remove it to load the model without",
             path.display()
         ))
@@ -75,14 +64,14 @@ pub(super) const FAR: f64 = 1e5;
 /// Checks that a path is a regular file and returns its size in bytes.
 pub(super) fn file_size(path: &Path) -> Result<u64, SceneError> {
     let size = yoro_files::size(path).map_err(|source| match source.kind() {
-        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => SceneError::Unusable(format!(
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => SceneError(format!(
             "there is no file {}: give the path of an .obj, .gltf or .glb file",
             path.display()
         )),
         _ => SceneError::read(path)(source),
     })?;
     size.ok_or_else(|| {
-        SceneError::Unusable(format!(
+        SceneError(format!(
             "{} is not a file: give the path of the .obj, .gltf or .glb file itself",
             path.display()
         ))

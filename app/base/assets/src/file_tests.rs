@@ -32,18 +32,22 @@ impl Folder {
     }
 }
 
-fn obj(text: &str) -> Model {
-    try_obj(text).unwrap()
+fn obj(text: impl AsRef<[u8]>) -> Model {
+    obj_scene(text).model
 }
 
-fn try_obj(text: impl AsRef<[u8]>) -> Result<Model, SceneError> {
-    let folder = Folder::new();
-    load(&folder.put("t.obj", text)).map(|s| s.model)
+fn obj_scene(text: impl AsRef<[u8]>) -> Scene {
+    load(&Folder::new().put("t.obj", text)).unwrap()
 }
 
 fn refused(text: impl AsRef<[u8]>, words: &[&str]) {
-    let message = try_obj(text).unwrap_err().to_string();
-    for word in words.iter().chain(&["t.obj"]) {
+    refused_file(&Folder::new().put("t.obj", text), &[words, &["t.obj"]].concat());
+}
+
+#[track_caller]
+fn refused_file(path: &Path, words: &[&str]) {
+    let message = load(path).unwrap_err().to_string();
+    for word in words {
         assert!(message.contains(word), "`{message}` should mention `{word}`");
     }
     assert!(!message.contains('\n'));
@@ -66,7 +70,7 @@ fn square(rest: &str) -> String {
 
 #[test]
 fn three_vertices_and_a_face_are_a_model() {
-    let model = obj(&square("f 1 2 3 4"));
+    let model = obj(square("f 1 2 3 4"));
     assert_eq!((model.triangle_count(), model.vertices.len()), (2, 4));
     assert!(model.vertices.iter().all(|v| v.normal == Vec3::Z && v.uv == Vec2::ZERO));
     assert_eq!(model.materials, [Material { double_sided: true, ..Material::default() }]);
@@ -77,14 +81,14 @@ fn three_vertices_and_a_face_are_a_model() {
 fn corners_are_read_in_all_spellings() {
     let given = "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 2\nvn 1 0 0\n";
     for face in ["1/1/1 2/2/1 3/3/1", "-4/-3/-2 -3/-2/-2 -2/-1/-2", "1/1/-2 2/2/1 -2/3/-2"] {
-        let model = obj(&square(&format!("{given}f {face}\n")));
+        let model = obj(square(&format!("{given}f {face}\n")));
         assert_eq!(
             model.vertices[2],
             Vertex { position: Vec3::new(1., 1., 0.), normal: Vec3::Z, uv: Vec2::ONE },
             "{face}"
         );
     }
-    let model = obj(&square(&format!("{given}f 1//2 2//2 3//2\nf 1/1 3/3 4/0/0\n")));
+    let model = obj(square(&format!("{given}f 1//2 2//2 3//2\nf 1/1 3/3 4/0/0\n")));
     assert_eq!(model.vertices[0].normal, Vec3::X);
     // The second face shares no vertex with the first and gets its own normal.
     let last = model.vertices[model.indices[5] as usize];
@@ -93,7 +97,7 @@ fn corners_are_read_in_all_spellings() {
 
 #[test]
 fn corners_with_and_without_normals_do_not_mix_up() {
-    let model = obj(&square("vn 1 0 0\nvt .5 .5\nf 1 2//1 3/1\n"));
+    let model = obj(square("vn 1 0 0\nvt .5 .5\nf 1 2//1 3/1\n"));
     let of = |k: usize| model.vertices[model.indices[k] as usize];
     assert_eq!([of(0).normal, of(1).normal, of(2).normal], [Vec3::Z, Vec3::X, Vec3::Z]);
     assert_eq!(of(2).uv, Vec2::splat(0.5));
@@ -101,23 +105,22 @@ fn corners_with_and_without_normals_do_not_mix_up() {
 
 #[test]
 fn line_ends_of_every_system_are_read() {
-    let unix = obj(&square("f 1 2 3 4\n"));
-    assert_eq!(obj(&square("f 1 2 3 4\n").replace('\n', "\r\n")), unix);
-    assert_eq!(obj(&square("f 1 2 3 4\n").replace('\n', "\r")), unix);
-    assert_eq!(obj(&square("f 1 2 \\\n3 \\\r\n4 # a face")), unix);
-    assert_eq!(obj(&format!("\u{feff}{}", square("f 1 2 3 4"))), unix);
-    assert_eq!(obj(&square("\t f\t1  2\t3 4   ")), unix);
+    let unix = obj(square("f 1 2 3 4\n"));
+    assert_eq!(obj(square("f 1 2 3 4\n").replace('\n', "\r\n")), unix);
+    assert_eq!(obj(square("f 1 2 3 4\n").replace('\n', "\r")), unix);
+    assert_eq!(obj(square("f 1 2 \\\n3 \\\r\n4 # a face")), unix);
+    assert_eq!(obj(format!("\u{feff}{}", square("f 1 2 3 4"))), unix);
+    assert_eq!(obj(square("\t f\t1  2\t3 4   ")), unix);
     let latin1 = [b"# caf\xe9\n".as_slice(), square("f 1 2 3 4").as_bytes()].concat();
-    assert_eq!(try_obj(latin1).unwrap(), unix);
-    assert_eq!(obj(&square("p 1\nl 1 2 3\nf 1 2\nxyz 3\nvp 1\nf 1 2 3 4\nend")), unix);
-    assert_eq!(obj(&square("f 1 2 3 4\nf 1 2 2\n")).triangle_count(), 2);
+    assert_eq!(obj(latin1), unix);
+    assert_eq!(obj(square("p 1\nl 1 2 3\nf 1 2\nxyz 3\nvp 1\nf 1 2 3 4\nend")), unix);
+    assert_eq!(obj(square("f 1 2 3 4\nf 1 2 2\n")).triangle_count(), 2);
 }
 
 #[test]
 fn groups_and_materials_are_named_without_a_library() {
-    let model = obj(&square(
-        "usemtl a\no one\nf 1 2 3\nusemtl b\nf 1 3 4\ng two\nusemtl\ta\nf 2 3 4\ng one\nf 1 2 4",
-    ));
+    let model =
+        obj(square("usemtl a\no one\nf 1 2 3\nusemtl b\nf 1 3 4\ng two\nusemtl\ta\nf 2 3 4\ng one\nf 1 2 4"));
     let names: Vec<_> = model.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["a", "b"]);
     let parts: Vec<_> = model.parts.iter().map(|p| (p.name.as_str(), p.material, p.indices.len())).collect();
@@ -127,8 +130,8 @@ fn groups_and_materials_are_named_without_a_library() {
 #[test]
 fn smoothing_off_makes_faces_flat() {
     let roof = "v -1 0 0\nv 0 .3 0\nv 1 0 0\nv -1 0 -1\nv 0 .3 -1\nv 1 0 -1\n";
-    assert_eq!(obj(&format!("{roof}f 1 2 5 4\nf 2 3 6 5")).vertices.len(), 6);
-    assert_eq!(obj(&format!("{roof}s off\nf 1 2 5 4\nf 2 3 6 5")).vertices.len(), 8);
+    assert_eq!(obj(format!("{roof}f 1 2 5 4\nf 2 3 6 5")).vertices.len(), 6);
+    assert_eq!(obj(format!("{roof}s off\nf 1 2 5 4\nf 2 3 6 5")).vertices.len(), 8);
 }
 
 #[test]
@@ -159,17 +162,16 @@ fn absurd_files_are_refused_in_a_sentence() {
 #[test]
 fn paths_of_other_things_are_refused_with_a_remedy() {
     let folder = Folder::new();
-    let message = |p: &Path| load(p).unwrap_err().to_string();
-    assert!(message(&folder.0.path().join("no.obj")).contains("there is no file"));
-    assert!(message(folder.0.path()).contains("is not a file"));
-    assert!(message(&folder.put("a.fbx", "x")).contains("convert it"));
-    assert!(message(&folder.put("a", "x")).contains("convert it"));
-    assert!(message(&folder.put("a.obj", "").join("b.obj")).contains("there is no file"));
+    refused_file(&folder.0.path().join("no.obj"), &["there is no file"]);
+    refused_file(folder.0.path(), &["is not a file"]);
+    refused_file(&folder.put("a.fbx", "x"), &["convert it"]);
+    refused_file(&folder.put("a", "x"), &["convert it"]);
+    refused_file(&folder.put("a.obj", "").join("b.obj"), &["there is no file"]);
 }
 
 #[test]
 fn faces_may_refer_forward_within_their_group() {
-    assert_eq!(obj(&format!("f 1 2 3 4\n{SQUARE}")).triangle_count(), 2);
+    assert_eq!(obj(format!("f 1 2 3 4\n{SQUARE}")).triangle_count(), 2);
     refused(format!("f 1 2 3\ng x\nf 1 2 3\n{SQUARE}"), &["vertex index"]);
 }
 
@@ -275,8 +277,7 @@ fn bad_pictures_are_named() {
         fs::read(folder.picture("p.png", 64, |x, y| [x as u8, y as u8, (x * y) as u8, 255])).unwrap();
     png.truncate(png.len() / 2);
     folder.put("p.png", &png);
-    let message = load(&scene).unwrap_err().to_string();
-    assert!(message.contains("p.png") && message.contains("replace"), "{message}");
+    refused_file(&scene, &["p.png", "replace"]);
     // A header that claims 30000 x 30000 pixels.
     let mut huge = b"BM".to_vec();
     huge.extend([0, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0]);
@@ -285,8 +286,7 @@ fn bad_pictures_are_named() {
     huge.extend([1, 0, 24, 0]);
     huge.extend([0; 24]);
     folder.put("p.png", &huge);
-    let message = load(&scene).unwrap_err().to_string();
-    assert!(message.contains("p.png") && message.contains("scale it down"), "{message}");
+    refused_file(&scene, &["p.png", "scale it down"]);
 }
 
 #[test]
@@ -306,11 +306,7 @@ fn viewpoints_are_read_from_camera_json() {
         (r#"[{"position": [1e39, 2, 3], "target": [1, 2, 3]}]"#, ""),
     ] {
         folder.put("a.camera.json", text);
-        let message = load(&scene).unwrap_err().to_string();
-        assert!(
-            message.contains("a.camera.json") && message.contains(word) && message.contains("remove it"),
-            "{message}"
-        );
+        refused_file(&scene, &["a.camera.json", word, "remove it"]);
     }
 }
 
@@ -330,8 +326,7 @@ fn light_style_and_scale_are_read_from_scene_json() {
         (r#"{"lights": [{"position": [0,0,0], "color": [1,1,1], "range": 0}]}"#, "range"),
     ] {
         folder.put("scene.json", text);
-        let message = load(&scene).unwrap_err().to_string();
-        assert!(message.contains("scene.json") && message.contains(word), "{message}");
+        refused_file(&scene, &["scene.json", word]);
     }
 }
 
@@ -347,8 +342,7 @@ fn box_obj(min: [f32; 3], max: [f32; 3]) -> String {
 
 #[test]
 fn small_things_are_circled_and_stay_in_view() {
-    let folder = Folder::new();
-    let s = load(&folder.put("a.obj", box_obj([-0.1, 0.0, -0.1], [0.1, 0.3, 0.1]))).unwrap();
+    let s = obj_scene(box_obj([-0.1, 0.0, -0.1], [0.1, 0.3, 0.1]));
     assert_eq!(s.viewpoints.len(), 8);
     for v in &s.viewpoints {
         let away = v.position.distance(Vec3::new(0.0, 0.15, 0.0));
@@ -360,10 +354,9 @@ fn small_things_are_circled_and_stay_in_view() {
 
 #[test]
 fn rooms_are_walked_and_have_even_light() {
-    let folder = Folder::new();
     // A room with a table.
     let room = box_obj([-4.0, 0.0, -3.0], [4.0, 3.0, 3.0]) + &box_obj([-1.0, 0.0, -0.5], [1.0, 0.8, 0.5]);
-    let s = load(&folder.put("a.obj", room)).unwrap();
+    let s = obj_scene(room);
     assert_eq!(s.viewpoints.len(), 8);
     for v in &s.viewpoints {
         assert!((1.5..2.5).contains(&v.position.y), "{}", v.position);
@@ -374,12 +367,11 @@ fn rooms_are_walked_and_have_even_light() {
 
 #[test]
 fn streets_are_walked_on_the_ground() {
-    let folder = Folder::new();
     let mut city = "v -50 0 -50\nv 50 0 -50\nv 50 0 50\nv -50 0 50\nf -1 -2 -3 -4\n".to_owned();
     for (x, z) in (0..16).map(|i| ((i % 4) as f32, (i / 4) as f32)) {
         city += &box_obj([x * 24.0 - 44.0, 0.0, z * 24.0 - 44.0], [x * 24.0 - 28.0, 20.0, z * 24.0 - 28.0]);
     }
-    let s = load(&folder.put("a.obj", city)).unwrap();
+    let s = obj_scene(city);
     assert_eq!(s.viewpoints.len(), 8);
     let inside = |p: f32| (p + 44.0).rem_euclid(24.0) < 16.0 && p.abs() < 44.0;
     for v in &s.viewpoints {
@@ -393,7 +385,6 @@ fn streets_are_walked_on_the_ground() {
 /// top.
 #[test]
 fn large_things_without_a_floor_are_circled() {
-    let folder = Folder::new();
     let cubes = box_obj([-2.5, -1.0, -1.0], [-0.5, 1.0, 1.0]) + &box_obj([0.5, -1.0, -1.0], [2.5, 1.0, 1.0]);
     let figure = box_obj([-2.0, 0.0, -1.0], [-0.5, 6.0, 1.0])
         + &box_obj([0.5, 0.0, -1.0], [2.0, 6.0, 1.0])
@@ -403,7 +394,7 @@ fn large_things_without_a_floor_are_circled() {
     // A closed block, whose inner walls cannot be seen from inside.
     let block = box_obj([-4.0, 0.0, -4.0], [4.0, 4.0, 4.0]);
     for (name, text) in [("cubes", cubes), ("figure", figure), ("wall", wall), ("block", block)] {
-        let mut model = load(&folder.put("a.obj", text)).unwrap().model;
+        let mut model = obj(text);
         model.materials.iter_mut().for_each(|m| m.double_sided = false);
         let (viewpoints, _) = defaults::viewpoints(&model, &rays::Rays::new(&model));
         let bounds = model.bounds();
@@ -418,14 +409,13 @@ fn large_things_without_a_floor_are_circled() {
 /// Solid bodies whose faces are drawn from both sides, as those of OBJ files are.
 #[test]
 fn no_viewpoint_is_inside_a_body() {
-    let folder = Folder::new();
     let block = box_obj([-4.0, 0.0, -4.0], [4.0, 4.0, 4.0]);
     let blocks: String = (0..9)
         .map(|i| [(i % 3) as f32 * 10.0, (i / 3) as f32 * 10.0])
         .map(|[x, z]| box_obj([x, 0.0, z], [x + 5.0, 5.0, z + 5.0]))
         .collect();
     for text in [block, blocks] {
-        let s = load(&folder.put("a.obj", text)).unwrap();
+        let s = obj_scene(text);
         let rays = rays::Rays::new(&s.model);
         for v in &s.viewpoints {
             assert!(rays.cast(v.position, v.pose().forward(), 1e3).is_none_or(|h| !h.is_behind), "{v:?}");
@@ -436,8 +426,7 @@ fn no_viewpoint_is_inside_a_body() {
 /// A plane that faces down, drawn from its front only.
 #[test]
 fn what_faces_down_is_seen_from_below() {
-    let folder = Folder::new();
-    let mut model = load(&folder.put("a.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3")).unwrap().model;
+    let mut model = obj("v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3");
     model.materials[0].double_sided = false;
     let (viewpoints, _) = defaults::viewpoints(&model, &rays::Rays::new(&model));
     assert!(viewpoints.iter().all(|v| v.position.y < 0.0), "{viewpoints:?}");
@@ -466,10 +455,9 @@ fn a_far_model_is_brought_to_the_origin() {
 /// A terrace with a small house has ground to walk on, but no viewpoint may see only sky.
 #[test]
 fn a_walk_shows_the_model() {
-    let folder = Folder::new();
     let terrace = "v -15 0 -15\nv 15 0 -15\nv 15 0 15\nv -15 0 15\nf -1 -2 -3 -4\n".to_owned()
         + &box_obj([-3.0, 0.0, -3.0], [3.0, 4.0, 3.0]);
-    let s = load(&folder.put("a.obj", terrace)).unwrap();
+    let s = obj_scene(terrace);
     let rays = rays::Rays::new(&s.model);
     for v in &s.viewpoints {
         assert!((v.position.y - 1.6).abs() < 0.1, "{}", v.position);
@@ -657,8 +645,7 @@ fn damaged_gltf_is_refused_in_a_sentence() {
     let (good, _) = gltf_text(&folder, true);
     let changed = |from: &str, to: &str, word: &str| {
         assert!(good.contains(from), "{from}");
-        let message = load(&folder.put("a.gltf", good.replacen(from, to, 1))).unwrap_err().to_string();
-        assert!(message.contains("a.gltf") && message.contains(word) && !message.contains('\n'), "{message}");
+        refused_file(&folder.put("a.gltf", good.replacen(from, to, 1)), &["a.gltf", word]);
     };
     changed("\"count\": 3", "\"count\": 18446744073709551615", "accessor 0");
     changed("data:application/octet-stream;base64,", "gone.bin?", "gone.bin");
@@ -707,11 +694,9 @@ fn sparse_accessors_replace_their_values() {
     moved.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
     assert_eq!(moved, [Vec3::ZERO, Vec3::Z, Vec3::Y]);
     // All other positions are zero, so nothing is left to draw.
-    let message = load(&folder.put("a.gltf", sparse("", 2))).unwrap_err().to_string();
-    assert!(message.contains("no triangle"), "{message}");
+    refused_file(&folder.put("a.gltf", sparse("", 2)), &["no triangle"]);
     let beyond = sparse("\"bufferView\": 0, ", 2).replacen("\"byteOffset\": 2,", "\"byteOffset\": 6,", 1);
-    let message = load(&folder.put("a.gltf", beyond)).unwrap_err().to_string();
-    assert!(message.contains("accessor 0 reaches beyond"), "{message}");
+    refused_file(&folder.put("a.gltf", beyond), &["accessor 0 reaches beyond"]);
 }
 
 #[test]

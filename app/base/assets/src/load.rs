@@ -164,7 +164,7 @@ pub fn load_animated(path: &Path, animation: Option<&str>) -> Result<Scene, Scen
         ("gltf" | "glb", _) => load_gltf(path, animation)?,
         _ => {
             let path = path.display();
-            return Err(SceneError::Unusable(format!(
+            return Err(SceneError(format!(
                 "{path} is not a scene that can be read: convert it to .obj, .gltf or .glb"
             )));
         }

@@ -14,12 +14,12 @@ use yoro::eyes::Pose;
 /// [`SceneError`], also if the file has no viewpoint.
 pub fn read(file: &Path) -> Result<Vec<Viewpoint>, SceneError> {
     let malformed = |what: String| {
-        SceneError::Unusable(format!(
+        SceneError(format!(
             "{} is not a camera path ({what}): give a JSON array of {{position, target}}",
             file.display()
         ))
     };
-    let bytes = yoro_files::read(file).map_err(|error| SceneError::Unusable(error.to_string()))?;
+    let bytes = yoro_files::read(file).map_err(|error| SceneError(error.to_string()))?;
     let viewpoints: Vec<Viewpoint> =
         serde_json::from_slice(&bytes).map_err(|error| malformed(error.to_string()))?;
     check(&viewpoints).map_err(malformed)?;

@@ -25,7 +25,6 @@ const MAX_CONFIGS: usize = 64;
 
 /// Errors of contexts and windows.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum WindowError {
     /// EGL provides no context.
     #[error("no OpenGL ES on this device: {0}; yoro needs OpenGL ES 3.0, 3.1 for all of its methods")]

@@ -35,7 +35,6 @@ impl Backend {
 
 /// Errors of opening a GL context.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum ContextError {
     /// libEGL is missing, or none of its platforms provides a context.
     #[error(

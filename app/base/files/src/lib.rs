@@ -19,26 +19,16 @@ pub use input::*;
 
 /// Errors of reading and writing files.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum FileError {
     /// The file or folder does not exist.
-    #[error("{} does not exist: check the path", path.display())]
-    Missing {
-        /// The file or folder asked for.
-        path: PathBuf,
-    },
+    #[error("{} does not exist: check the path", .0.display())]
+    Missing(PathBuf),
     /// The path is a folder, but a file is needed.
-    #[error("{} is a folder: name a file", path.display())]
-    IsFolder {
-        /// The folder.
-        path: PathBuf,
-    },
+    #[error("{} is a folder: name a file", .0.display())]
+    IsFolder(PathBuf),
     /// The path is a file, but a folder is needed.
-    #[error("{} is not a folder: name a folder, or remove the file", path.display())]
-    NotFolder {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{} is not a folder: name a folder, or remove the file", .0.display())]
+    NotFolder(PathBuf),
     /// The operating system refused to read.
     #[error("cannot read {}: {}", path.display(), remedy(source))]
     Read {
@@ -56,20 +46,17 @@ pub enum FileError {
         source: io::Error,
     },
     /// The output would replace an input.
-    #[error("{} is an input of this command: name another file for the output", path.display())]
-    IsInput {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{} is an input of this command: name another file for the output", .0.display())]
+    IsInput(PathBuf),
     /// The user has asked to stop.
     #[error(transparent)]
     Interrupted(#[from] interrupt::Interrupted),
+    /// The file or folder belongs to another run, so nothing is added to it. Holds the sentence.
+    #[error("{0}")]
+    OtherRun(String),
     /// Another process appends to the file.
-    #[error("{} is being written by another yoro: wait until that has ended, or choose another place", path.display())]
-    InUse {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{} is being written by another yoro: wait until that has ended, or choose another place", .0.display())]
+    InUse(PathBuf),
 }
 
 /// Returns an error of the operating system as a [`FileError`] tells it: with a remedy where there is one.
@@ -91,12 +78,12 @@ pub fn remedy(error: &io::Error) -> String {
 /// Returns the whole content of the file `path`.
 pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     if path.is_dir() {
-        return Err(FileError::IsFolder { path: path.into() });
+        return Err(FileError::IsFolder(path.into()));
     }
     let mut bytes = Vec::new();
     let read = open(path).and_then(|mut input| input.read_to_end(&mut bytes));
     read.map_err(|source| match source.kind() {
-        io::ErrorKind::NotFound => FileError::Missing { path: path.into() },
+        io::ErrorKind::NotFound => FileError::Missing(path.into()),
         _ => FileError::Read { path: path.into(), source },
     })?;
     Ok(bytes)
@@ -109,7 +96,7 @@ pub fn create_folder(path: &Path) -> Result<(), FileError> {
     }
     // Creates before checking, since another thread may create the same folder at the same time.
     fs::create_dir_all(path).map_err(|source| match path.exists() {
-        true if !path.is_dir() => FileError::NotFolder { path: path.into() },
+        true if !path.is_dir() => FileError::NotFolder(path.into()),
         _ => FileError::Write { path: path.into(), source },
     })
 }
@@ -141,12 +128,12 @@ pub fn write_with(
         Err(source) => FileError::Write { path: path.into(), source },
     };
     if path.is_dir() {
-        return Err(FileError::IsFolder { path: path.into() });
+        return Err(FileError::IsFolder(path.into()));
     }
     // The target of a link is replaced, not the link.
     let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
     if INPUTS.get().is_some_and(|inputs| inputs.contains(&target)) {
-        return Err(FileError::IsInput { path: path.into() });
+        return Err(FileError::IsInput(path.into()));
     }
     if target.exists() && !target.is_file() {
         let mut file = fs::OpenOptions::new().write(true).open(&target).map_err(failed)?;
@@ -175,13 +162,13 @@ pub fn write_with(
 /// and missing parent folders.
 pub fn append(path: &Path) -> Result<fs::File, FileError> {
     if path.is_dir() {
-        return Err(FileError::IsFolder { path: path.into() });
+        return Err(FileError::IsFolder(path.into()));
     }
     create_folder(path.parent().unwrap_or(Path::new("")))?;
     let failed = |source| FileError::Write { path: path.into(), source };
     let file = fs::OpenOptions::new().append(true).create(true).open(path).map_err(failed)?;
     match file.try_lock() {
-        Err(fs::TryLockError::WouldBlock) => Err(FileError::InUse { path: path.into() }),
+        Err(fs::TryLockError::WouldBlock) => Err(FileError::InUse(path.into())),
         // Not every file system has locks.
         Ok(()) | Err(fs::TryLockError::Error(_)) => Ok(file),
     }
@@ -205,10 +192,10 @@ pub fn find(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, FileErro
 /// Returns all files below `folder` whose relative paths are wanted, like [`find`].
 pub fn find_wanted(folder: &Path, is_wanted: impl Fn(&Path) -> bool) -> Result<Vec<PathBuf>, FileError> {
     if !folder.exists() {
-        return Err(FileError::Missing { path: folder.into() });
+        return Err(FileError::Missing(folder.into()));
     }
     if !folder.is_dir() {
-        return Err(FileError::NotFolder { path: folder.into() });
+        return Err(FileError::NotFolder(folder.into()));
     }
     let mut found = Vec::new();
     let mut waiting = vec![PathBuf::new()];
@@ -267,18 +254,18 @@ mod tests {
         let path = dir.path().join("new/results.jsonl");
         let mut first = append(&path).unwrap();
         first.write_all(b"1").unwrap();
-        assert!(matches!(append(&path), Err(FileError::InUse { .. })));
+        assert!(matches!(append(&path), Err(FileError::InUse(_))));
         drop(first);
         append(&path).unwrap().write_all(b"2").unwrap();
         assert_eq!(read(&path).unwrap(), b"12");
-        assert!(matches!(append(dir.path()), Err(FileError::IsFolder { .. })));
+        assert!(matches!(append(dir.path()), Err(FileError::IsFolder(_))));
     }
 
     #[test]
     fn folders_and_missing_files_are_named() {
         let dir = tempfile::tempdir().unwrap();
-        assert!(matches!(read(dir.path()), Err(FileError::IsFolder { .. })));
-        assert!(matches!(write(dir.path(), b""), Err(FileError::IsFolder { .. })));
+        assert!(matches!(read(dir.path()), Err(FileError::IsFolder(_))));
+        assert!(matches!(write(dir.path(), b""), Err(FileError::IsFolder(_))));
         let missing = dir.path().join("nothing.png");
         assert_eq!(
             read(&missing).unwrap_err().to_string(),
@@ -286,8 +273,8 @@ mod tests {
         );
         let file = dir.path().join("file");
         write(&file, b"x").unwrap();
-        assert!(matches!(create_folder(&file), Err(FileError::NotFolder { .. })));
-        assert!(matches!(write(&file.join("below"), b""), Err(FileError::NotFolder { .. })));
+        assert!(matches!(create_folder(&file), Err(FileError::NotFolder(_))));
+        assert!(matches!(write(&file.join("below"), b""), Err(FileError::NotFolder(_))));
     }
 
     #[test]
@@ -331,6 +318,6 @@ mod tests {
         }
         let found = find(dir.path(), &["png"]).unwrap();
         assert_eq!(found, [PathBuf::from("a/c.png"), PathBuf::from("b.PNG")]);
-        assert!(matches!(find(&dir.path().join("none"), &["png"]), Err(FileError::Missing { .. })));
+        assert!(matches!(find(&dir.path().join("none"), &["png"]), Err(FileError::Missing(_))));
     }
 }

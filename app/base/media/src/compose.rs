@@ -60,8 +60,10 @@ pub fn difference(a: &RgbImage, b: &RgbImage) -> Result<RgbImage, PictureError> 
 }
 
 fn check_sizes(a: &RgbImage, b: &RgbImage) -> Result<(), PictureError> {
-    if a.dimensions() != b.dimensions() {
-        return Err(PictureError::SizesDiffer { a: a.dimensions(), b: b.dimensions() });
+    let ((aw, ah), (bw, bh)) = (a.dimensions(), b.dimensions());
+    if (aw, ah) != (bw, bh) {
+        let what = format!("the two images differ in size ({aw}x{ah} and {bw}x{bh}): give two of one size");
+        return Err(PictureError::Unusable(what));
     }
     Ok(())
 }

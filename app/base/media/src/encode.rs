@@ -17,7 +17,7 @@ pub fn save_color(path: &Path, image: &RgbImage) -> Result<(), PictureError> {
     } else if files::has_extension(path, &["jpg", "jpeg"]) {
         write_encoded(path, encode_jpeg(image, 92))
     } else {
-        Err(PictureError::Extension { path: path.into(), allowed: ".png or .jpg" })
+        Err(PictureError::extension(path, ".png or .jpg"))
     }
 }
 
@@ -49,11 +49,11 @@ pub fn save_depth(path: &Path, image: &DepthImage) -> Result<(), PictureError> {
     write_encoded(path, written.map(|()| bytes))
 }
 
-fn only_extension(path: &Path, extension: &str, allowed: &'static str) -> Result<(), PictureError> {
+fn only_extension(path: &Path, extension: &str, allowed: &str) -> Result<(), PictureError> {
     if files::has_extension(path, &[extension]) {
         return Ok(());
     }
-    Err(PictureError::Extension { path: path.into(), allowed })
+    Err(PictureError::extension(path, allowed))
 }
 
 /// Returns the image encoded as PNG. An image without pixels cannot be encoded.

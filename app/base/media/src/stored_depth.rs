@@ -23,7 +23,6 @@ pub enum StoredDepth {
 
 /// Errors of decoding depth.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
 pub enum StoredDepthError {
     /// Some values are NaN, for example powers of negative values.
     #[error("some values are no numbers")]

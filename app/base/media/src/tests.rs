@@ -129,8 +129,8 @@ fn exr_depth_is_unchanged_and_the_channel_is_found() {
 fn bad_files_are_refused_with_a_remedy() {
     let dir = folder();
     let path = dir.path().join("a.png");
-    assert!(matches!(load_color(&path), Err(PictureError::File(FileError::Missing { .. }))));
-    assert!(matches!(load_color(dir.path()), Err(PictureError::File(FileError::IsFolder { .. }))));
+    assert!(matches!(load_color(&path), Err(PictureError::File(FileError::Missing(_)))));
+    assert!(matches!(load_color(dir.path()), Err(PictureError::File(FileError::IsFolder(_)))));
 
     let whole = encode_png(&gradient(40, 40)).unwrap();
     for cut in [20, whole.len() / 2, whole.len() - 20] {
@@ -153,8 +153,7 @@ fn bad_files_are_refused_with_a_remedy() {
     let bytes = files::read(&exr).unwrap();
     files::write(&exr, &bytes[..bytes.len() - 9]).unwrap();
     assert!(is_refused(load_depth(&exr), "is damaged"));
-    let error = save_color(&dir.path().join("a.gif"), &gradient(2, 2)).unwrap_err();
-    assert!(matches!(error, PictureError::Extension { .. }));
+    assert!(is_refused(save_color(&dir.path().join("a.gif"), &gradient(2, 2)), "a.gif: use the extension"));
 }
 
 fn crc32(bytes: &[u8]) -> u32 {
@@ -182,7 +181,7 @@ fn both_eyes_are_composed_into_one_picture() {
         .0,
         [20, 255, 0]
     );
-    assert!(matches!(difference(&left, &gradient(9, 5)), Err(PictureError::SizesDiffer { .. })));
+    assert!(is_refused(difference(&left, &gradient(9, 5)), "differ in size (8x5 and 9x5)"));
 
     // The rows of both matrices together sum to 1 within the rounding of the published coefficients (green and blue
     // preserve white, red loses .001). So grey in both eyes stays grey, and each eye keeps its own colours.

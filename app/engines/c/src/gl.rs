@@ -4,13 +4,14 @@ mod check;
 mod compose;
 mod entry_points;
 
+use std::any::Any;
 use std::ffi::{CStr, c_char, c_void};
 use std::num::NonZeroU32;
 use std::rc::Rc;
 
 use yoro::opengl::{
     self, AnyView, Composer, Context, Destination, Gather, GlApi, GlState, Motion, Options, Outputs, Part,
-    PassTime, Profiling, Source,
+    PassTime, Pipeline, Profiling, Source,
 };
 use yoro::synthesis::backend::WarpKind;
 
@@ -18,8 +19,8 @@ use crate::context::{
     Backend, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, YoroTimes, create, enter_as,
     write_bytes,
 };
-use crate::motion::{YoroMotionWarp, read_motion_warp};
-use crate::pose::{YoroPoseWarp, read_pose_warp};
+use crate::motion::YoroMotionWarp;
+use crate::pose::YoroPoseWarp;
 use crate::result::{
     Failure, YORO_ERROR_DRIVER, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YoroMessages,
     YoroResult,
@@ -28,8 +29,8 @@ use crate::types::{
     Kind, YORO_OUTPUT_DEPTH, YORO_OUTPUT_OPEN_DEPTH, YORO_OUTPUT_OPEN_STENCIL, YORO_OUTPUT_SRGB,
     YoroOutputFlags, YoroWarpKind, holes, other_kind, warp_kind,
 };
-use crate::versioned::{self, versioned};
-use crate::views::{YoroWarp, read_warp};
+use crate::versioned::{self, Given, given, versioned};
+use crate::views::YoroWarp;
 
 pub use compose::*;
 #[doc(hidden)]
@@ -141,7 +142,7 @@ pub unsafe extern "C" fn yoro_gl_buffer_bytes(
                 Kind::AnyView => Err(Failure::value(
                     "the buffers for YORO_WARP_KIND_POSE have 16 bytes for each 16 x 8 pixels of the source, and of the target",
                 )),
-                Kind::Gather | Kind::Motion => Ok(opengl::buffer_bytes(&read_warp(warp)?)),
+                Kind::Gather | Kind::Motion => Ok(opengl::buffer_bytes(&given(warp)?)),
             },
         )
     }
@@ -195,12 +196,7 @@ versioned!(YoroGlImages);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_gl_prepare(context: *mut YoroContext, warp: *const YoroWarp) -> YoroResult {
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
-    unsafe {
-        enter_gl(context, |gl| {
-            let warp = gl.fitting(|| read_warp(warp))?;
-            Ok(gl.passes.eyes()?.prepare(&warp)?)
-        })
-    }
+    unsafe { prepare(context, warp) }
 }
 
 /// Does what yoro_gl_prepare does, in a context of YORO_WARP_KIND_POSE.
@@ -214,12 +210,7 @@ pub unsafe extern "C" fn yoro_gl_prepare_pose(
     warp: *const YoroPoseWarp,
 ) -> YoroResult {
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
-    unsafe {
-        enter_gl(context, |gl| {
-            let warp = gl.fitting(|| read_pose_warp(warp))?;
-            Ok(gl.passes.pose()?.prepare(&warp)?)
-        })
-    }
+    unsafe { prepare(context, warp) }
 }
 
 /// Does what yoro_gl_prepare does, in a context of YORO_WARP_KIND_MOTION.
@@ -233,12 +224,7 @@ pub unsafe extern "C" fn yoro_gl_prepare_motion(
     warp: *const YoroMotionWarp,
 ) -> YoroResult {
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
-    unsafe {
-        enter_gl(context, |gl| {
-            let warp = gl.fitting(|| read_motion_warp(warp))?;
-            Ok(gl.passes.motion()?.prepare(&warp)?)
-        })
-    }
+    unsafe { prepare(context, warp) }
 }
 
 /// Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it except for open holes.
@@ -263,16 +249,7 @@ pub unsafe extern "C" fn yoro_gl_synthesize(
     images: *const YoroGlImages,
 ) -> YoroResult {
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
-    unsafe {
-        enter_gl(context, |gl| {
-            gl.passes.eyes()?;
-            let warp = gl.fitting(|| read_warp(warp))?;
-            let images = versioned::read(images, "images")?;
-            gl.synthesize(warp.sizes(), &images, |passes, source, target| {
-                Ok(passes.eyes()?.synthesize(source, &warp, target)?)
-            })
-        })
-    }
+    unsafe { synthesize(context, warp, images) }
 }
 
 /// Synthesizes a view in any pose near the rendered one, in a context of YORO_WARP_KIND_POSE. Otherwise it is like
@@ -290,16 +267,7 @@ pub unsafe extern "C" fn yoro_gl_synthesize_pose(
     images: *const YoroGlImages,
 ) -> YoroResult {
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
-    unsafe {
-        enter_gl(context, |gl| {
-            gl.passes.pose()?;
-            let warp = gl.fitting(|| read_pose_warp(warp))?;
-            let images = versioned::read(images, "images")?;
-            gl.synthesize(warp.sizes(), &images, |passes, source, target| {
-                Ok(passes.pose()?.synthesize(source, &warp, target)?)
-            })
-        })
-    }
+    unsafe { synthesize(context, warp, images) }
 }
 
 /// Makes motion vectors of an eye, in a context of YORO_WARP_KIND_MOTION. Otherwise it is like yoro_gl_synthesize. The
@@ -317,14 +285,40 @@ pub unsafe extern "C" fn yoro_gl_synthesize_motion(
     images: *const YoroGlImages,
 ) -> YoroResult {
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
+    unsafe { synthesize(context, warp, images) }
+}
+
+/// # Safety
+/// Both pointers are null or point to live objects.
+unsafe fn prepare<T: Given>(context: *mut YoroContext, warp: *const T) -> YoroResult
+where
+    T::Core: WarpKind,
+{
+    // SAFETY: same contract.
     unsafe {
         enter_gl(context, |gl| {
-            gl.passes.motion()?;
-            let warp = gl.fitting(|| read_motion_warp(warp))?;
-            let images = versioned::read(images, "images")?;
-            gl.synthesize(warp.sizes(), &images, |passes, source, target| {
-                Ok(passes.motion()?.synthesize(source, &warp, target)?)
-            })
+            let warp = gl.fitting(warp)?;
+            Ok(gl.passes.of()?.prepare(&warp)?)
+        })
+    }
+}
+
+/// # Safety
+/// All pointers are null or point to live objects.
+unsafe fn synthesize<T: Given>(
+    context: *mut YoroContext,
+    warp: *const T,
+    images: *const YoroGlImages,
+) -> YoroResult
+where
+    T::Core: WarpKind,
+{
+    // SAFETY: same contract.
+    unsafe {
+        enter_gl(context, |gl| {
+            gl.passes.of::<T::Core>()?;
+            let warp = gl.fitting(warp)?;
+            gl.synthesize(&warp, &versioned::read(images, "images")?)
         })
     }
 }
@@ -355,40 +349,15 @@ pub(crate) struct Gl {
 }
 
 /// The passes for one kind of warp.
-enum Passes {
-    Eyes(Box<Gather>),
-    Pose(Box<AnyView>),
-    Motion(Box<Motion>),
+struct Passes {
+    kind: Kind,
+    pipeline: Box<dyn Any>,
 }
 
 impl Passes {
-    fn kind(&self) -> Kind {
-        match self {
-            Passes::Eyes(_) => Kind::Gather,
-            Passes::Pose(_) => Kind::AnyView,
-            Passes::Motion(_) => Kind::Motion,
-        }
-    }
-
-    fn eyes(&mut self) -> Result<&mut Gather, Failure> {
-        match self {
-            Passes::Eyes(gather) => Ok(gather),
-            other => Err(other_kind(other.kind())),
-        }
-    }
-
-    fn motion(&mut self) -> Result<&mut Motion, Failure> {
-        match self {
-            Passes::Motion(motion) => Ok(motion),
-            other => Err(other_kind(other.kind())),
-        }
-    }
-
-    fn pose(&mut self) -> Result<&mut AnyView, Failure> {
-        match self {
-            Passes::Pose(any_view) => Ok(any_view),
-            other => Err(other_kind(other.kind())),
-        }
+    /// Returns the pipeline, if it is for this kind of warp.
+    fn of<W: WarpKind + 'static>(&mut self) -> Result<&mut Pipeline<W>, Failure> {
+        self.pipeline.downcast_mut().ok_or_else(|| other_kind(self.kind))
     }
 }
 
@@ -428,10 +397,10 @@ impl Gl {
         let has = |bit| info.sources & bit != 0;
         let (parts, array_textures) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
         let options = Options { gl_state, parts, array_textures, ..Options::default() };
-        let passes = match kind {
-            Kind::AnyView => Passes::Pose(Box::new(AnyView::new(&context, &options, outputs)?)),
-            Kind::Gather => Passes::Eyes(Box::new(Gather::new(&context, &options, outputs)?)),
-            Kind::Motion => Passes::Motion(Box::new(Motion::new(&context, &options, outputs)?)),
+        let pipeline: Box<dyn Any> = match kind {
+            Kind::AnyView => Box::new(AnyView::new(&context, &options, outputs)?),
+            Kind::Gather => Box::new(Gather::new(&context, &options, outputs)?),
+            Kind::Motion => Box::new(Motion::new(&context, &options, outputs)?),
         };
         let composes = info.composes == 1;
         let composer = composes.then(|| Composer::new(&context, gl_state, outputs.srgb)).transpose()?;
@@ -443,7 +412,7 @@ impl Gl {
         let times = Vec::with_capacity(8);
         Ok(Gl {
             context,
-            passes,
+            passes: Passes { kind, pipeline },
             composer,
             options,
             outputs,
@@ -454,8 +423,14 @@ impl Gl {
         })
     }
 
-    /// Reads a warp with `read`, and checks that the driver can render its sizes.
-    fn fitting<W: WarpKind>(&self, read: impl FnOnce() -> Result<W, Failure>) -> Result<W, Failure> {
+    /// Reads a warp, and checks that the driver can render its sizes.
+    ///
+    /// # Safety
+    /// `warp` is null or points to a warp.
+    unsafe fn fitting<T: Given>(&self, warp: *const T) -> Result<T::Core, Failure>
+    where
+        T::Core: WarpKind,
+    {
         // SAFETY: the context was created with this entry point.
         if self.check && !unsafe { entry_points::is_current(self.get_string) } {
             return Err(Failure::new(
@@ -463,7 +438,8 @@ impl Gl {
                 "no GL context is current on this thread: call on the thread on which yoro_gl_create was called",
             ));
         }
-        let warp = read()?;
+        // SAFETY: same contract.
+        let warp = unsafe { given(warp) }?;
         let limit = self.context.capabilities().max_texture_size;
         let largest = warp.sizes().into_iter().flatten().max().unwrap_or(0);
         if largest > limit {
@@ -477,17 +453,9 @@ impl Gl {
         Ok(warp)
     }
 
-    /// Checks the images of a call, and draws with `draw`.
-    fn synthesize(
-        &mut self,
-        [source_size, target_size]: [[u32; 2]; 2],
-        images: &YoroGlImages,
-        draw: impl FnOnce(&mut Passes, Source, &Destination) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
-        let texture = |name: u32, what: &str| {
-            let name = NonZeroU32::new(name).map(glow::NativeTexture);
-            name.ok_or_else(|| Failure::value(format!("{what} is 0: give the name of a texture")))
-        };
+    /// Checks the images of a call, and draws.
+    fn synthesize<W: WarpKind + 'static>(&mut self, warp: &W, images: &YoroGlImages) -> Result<(), Failure> {
+        let [source_size, target_size] = warp.sizes();
         let color = texture(images.color_texture, "color_texture")?;
         let depth = texture(images.depth_texture, "depth_texture")?;
         let part = self.part(source_size, images)?;
@@ -512,24 +480,24 @@ impl Gl {
         if self.check {
             check::check_images(&self.context, &self.options, self.outputs, source, source_size, &target)?;
         }
-        draw(&mut self.passes, source, &target)?;
-        if self.timed {
-            self.end_timed_frame();
+        self.passes.of()?.synthesize(source, warp, &target)?;
+        self.end_call("yoro_gl_synthesize")
+    }
+
+    /// Ends a call of this function: keeps the times of an earlier frame if they have become known, and checks for GL's
+    /// errors if they are to be checked.
+    fn end_call(&mut self, function: &str) -> Result<(), Failure> {
+        let known = self.times.len();
+        if self.timed && self.context.end_timed_frame(&mut self.times).is_some() {
+            self.times.drain(..known);
         }
-        match self.check_for_errors() {
+        match self.check.then(|| self.context.take_errors()).flatten() {
             Some(errors) => Err(Failure::new(
                 YORO_ERROR_DRIVER,
-                format!("GL says {errors}: see the preconditions of yoro_gl_synthesize"),
+                format!("GL says {errors}: see the preconditions of {function}"),
             )),
             None => Ok(()),
         }
-    }
-}
-
-impl Gl {
-    /// Returns GL's errors if they are to be checked.
-    fn check_for_errors(&self) -> Option<String> {
-        self.check.then(|| self.context.take_errors()).flatten()
     }
 
     /// Returns the part of the textures that was rendered, or `None` for all of them.
@@ -556,14 +524,6 @@ impl Gl {
             ));
         }
         Ok(Some(Part { origin, image_size }))
-    }
-
-    /// Ends a frame of the timer, and keeps the times of an earlier one if they have become known.
-    fn end_timed_frame(&mut self) {
-        let known = self.times.len();
-        if self.context.end_timed_frame(&mut self.times).is_some() {
-            self.times.drain(..known);
-        }
     }
 }
 
@@ -603,6 +563,11 @@ impl Backend for Gl {
         capabilities.set_device(&own.renderer);
         capabilities
     }
+}
+
+fn texture(name: u32, what: &str) -> Result<glow::NativeTexture, Failure> {
+    let name = NonZeroU32::new(name).map(glow::NativeTexture);
+    name.ok_or_else(|| Failure::value(format!("{what} is 0: give the name of a texture")))
 }
 
 pub(crate) fn outputs(bits: YoroOutputFlags) -> Result<Outputs, Failure> {

@@ -7,7 +7,7 @@ use yoro::eyes::{
 
 use crate::eyes::YoroEyes;
 use crate::result::{Failure, YORO_ERROR_NULL, YoroResult, catch_errors};
-use crate::versioned::{self, versioned};
+use crate::versioned::{self, Given, versioned};
 use crate::views::{YoroViews, guard_band, views, views_by};
 
 /// The strength of foveation, as OpenXR's runtimes name it.
@@ -192,9 +192,12 @@ impl YoroComposition {
         }
         own
     }
+}
 
-    /// Returns the core's composition, with rows ordered as here. Checks the numbers, since programs may have made them
-    /// up.
+impl Given for YoroComposition {
+    type Core = Composition;
+    const MISSING: &'static str = "composition is NULL: give one of yoro_levels_from_eyes";
+
     fn checked(&self) -> Result<Composition, Failure> {
         let sizes = [[self.width, self.height], [self.wide_width, self.wide_height]];
         let has_inset = self.inset_width > 0 && self.inset_height > 0;
@@ -220,16 +223,4 @@ impl YoroComposition {
         let wide = LevelPlace { size: sizes[1], scale: self.wide_scale, offset: self.wide_offset };
         Ok(Composition { size: sizes[0], wide, inset })
     }
-}
-
-/// Reads a composition.
-///
-/// # Safety
-/// `composition` is null or points to a composition.
-pub(crate) unsafe fn read_composition(composition: *const YoroComposition) -> Result<Composition, Failure> {
-    if composition.is_null() {
-        return Err(Failure::new(YORO_ERROR_NULL, "composition is NULL: give one of yoro_levels_from_eyes"));
-    }
-    // SAFETY: the pointer is not null, so it points to a composition; the read needs no alignment.
-    unsafe { composition.read_unaligned() }.checked()
 }

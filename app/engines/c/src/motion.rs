@@ -5,7 +5,7 @@ use yoro::eyes::{MotionMap, MotionWarp, Ndc, VectorSpace, VectorsOf};
 use crate::eyes::YoroEyes;
 use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
 use crate::types::{YORO_CLIP_OPENGL, YORO_ROWS_DOWN};
-use crate::versioned::{self, check_reserved, versioned};
+use crate::versioned::{self, Given, check_reserved, versioned};
 use crate::views::{YoroWarp, guard_band, turned};
 
 /// The image in whose normalized device coordinates motion vectors are given. A vector is the place of a surface minus its
@@ -133,8 +133,12 @@ impl YoroMotionWarp {
             reserved: 0,
         }
     }
+}
 
-    /// Returns the core's warp. Checks the numbers, since programs may have made them up.
+impl Given for YoroMotionWarp {
+    type Core = MotionWarp;
+    const MISSING: &'static str = "warp is NULL: give the one of yoro_motion_warp";
+
     fn checked(&self) -> Result<MotionWarp, Failure> {
         check_reserved("warp", &[self.reserved])?;
         let YoroMotionWarp { per_z, per_depth, constant, .. } = *self;
@@ -145,16 +149,4 @@ impl YoroMotionWarp {
         let law = MotionMap { per_z, per_depth, constant, of: vectors_of(self.vectors)? };
         Ok(MotionWarp { warp: self.warp.checked()?, law })
     }
-}
-
-/// Reads a warp.
-///
-/// # Safety
-/// `warp` is null or points to a warp.
-pub(crate) unsafe fn read_motion_warp(warp: *const YoroMotionWarp) -> Result<MotionWarp, Failure> {
-    if warp.is_null() {
-        return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give the one of yoro_motion_warp"));
-    }
-    // SAFETY: the pointer is not null, so it points to a warp; the read needs no alignment.
-    unsafe { warp.read_unaligned() }.checked()
 }

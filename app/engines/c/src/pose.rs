@@ -5,7 +5,7 @@ use yoro::eyes::{HeadMotion, PoseWarp, View};
 
 use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
 use crate::types::{YoroClip, YoroDepth, YoroRows, clip, rows_down};
-use crate::versioned::{self, check_reserved, versioned};
+use crate::versioned::{self, Given, check_reserved, versioned};
 use crate::views::{YoroView, depth_range, image};
 
 /// Two views of a scene: a rendered one, and one in any pose near it.
@@ -206,9 +206,12 @@ impl YoroPoseWarp {
             far_depth: warp.far_depth,
         }
     }
+}
 
-    /// Returns the core's warp, with rows ordered as in the images. Checks the numbers, since programs may have made
-    /// them up.
+impl Given for YoroPoseWarp {
+    type Core = PoseWarp;
+    const MISSING: &'static str = "warp is NULL: give the one of yoro_pose_warp";
+
     fn checked(&self) -> Result<PoseWarp, Failure> {
         let sizes = [[self.source_width, self.source_height], [self.target_width, self.target_height]];
         let numbers = [&self.homography[..], &self.epipole, &self.source_law, &self.target_law];
@@ -238,18 +241,6 @@ impl YoroPoseWarp {
             far_depth: self.far_depth,
         })
     }
-}
-
-/// Reads a warp.
-///
-/// # Safety
-/// `warp` is null or points to a warp.
-pub(crate) unsafe fn read_pose_warp(warp: *const YoroPoseWarp) -> Result<PoseWarp, Failure> {
-    if warp.is_null() {
-        return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give the one of yoro_pose_warp"));
-    }
-    // SAFETY: the pointer is not null, so it points to a warp; the read needs no alignment.
-    unsafe { warp.read_unaligned() }.checked()
 }
 
 #[cfg(test)]

@@ -32,6 +32,29 @@ macro_rules! versioned {
 }
 pub(crate) use versioned;
 
+/// A structure without a size, which the library fills in and a program gives back.
+pub(crate) trait Given: Copy {
+    /// What it is in the core.
+    type Core: 'static;
+    /// What is wrong with NULL, and where to get the structure.
+    const MISSING: &'static str;
+
+    /// Returns the core's value, with rows ordered as here. Checks the numbers, since programs may have made them up.
+    fn checked(&self) -> Result<Self::Core, Failure>;
+}
+
+/// Reads and checks a structure that the program gives back.
+///
+/// # Safety
+/// `pointer` is null or points to such a structure.
+pub(crate) unsafe fn given<T: Given>(pointer: *const T) -> Result<T::Core, Failure> {
+    if pointer.is_null() {
+        return Err(Failure::new(YORO_ERROR_NULL, T::MISSING));
+    }
+    // SAFETY: the pointer is not null, so it points to a structure; the read needs no alignment.
+    unsafe { pointer.read_unaligned() }.checked()
+}
+
 /// Checks fields that must be zero until a later version gives them a meaning.
 pub(crate) fn check_reserved(what: &str, fields: &[u32]) -> Result<(), Failure> {
     match fields.iter().find(|field| **field != 0) {

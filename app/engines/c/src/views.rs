@@ -5,11 +5,11 @@ use yoro::eyes::{
     DepthRange, DisparityMap, EyePair, EyesError, Frustum, GuardBand, Pose, SynthesisViews, View, Warp,
 };
 
-use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
+use crate::result::{Failure, YoroMessages, YoroResult, catch_errors};
 use crate::types::{
     Clip, YORO_DEPTH_REVERSED, YORO_DEPTH_STANDARD, YoroDepth, YoroEye, YoroFov, YoroPose, depth, eye,
 };
-use crate::versioned::{self, Versioned, check_reserved, versioned};
+use crate::versioned::{self, Given, Versioned, check_reserved, versioned};
 
 /// One image: its size, the pose of its eye, its frustum, and the matrices that render it.
 #[repr(C)]
@@ -101,9 +101,13 @@ impl YoroWarp {
             reserved: 0,
         }
     }
+}
 
-    /// Returns the core's warp. Checks the numbers, since programs may have made them up.
-    pub(crate) fn checked(&self) -> Result<Warp, Failure> {
+impl Given for YoroWarp {
+    type Core = Warp;
+    const MISSING: &'static str = "warp is NULL: give the one of YoroViews";
+
+    fn checked(&self) -> Result<Warp, Failure> {
         /// The largest width and height. No driver renders larger images.
         const MAX_SIDE: u32 = 1 << 16;
         let sides = [self.source_width, self.source_height, self.target_width, self.target_height];
@@ -128,18 +132,6 @@ impl YoroWarp {
             Failure::value("the warp has a displacement beyond all images: take it from yoro_views_from_eyes")
         })
     }
-}
-
-/// Reads a warp.
-///
-/// # Safety
-/// `warp` is null or points to a warp.
-pub(crate) unsafe fn read_warp(warp: *const YoroWarp) -> Result<Warp, Failure> {
-    if warp.is_null() {
-        return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give the one of YoroViews"));
-    }
-    // SAFETY: the pointer is not null, so it points to a warp; the read needs no alignment.
-    unsafe { warp.read_unaligned() }.checked()
 }
 
 /// Runs the body of a function that fills in [`YoroViews`]. `messages` returns the callback in `eyes`, and `work_out`

@@ -4,17 +4,17 @@ mod compose;
 mod device;
 mod types;
 
+use yoro::eyes::{MotionWarp, PoseWarp, Warp};
 use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ash::vk;
-use yoro::vulkan::{Frame, Pipeline, SourceId, SourceImages, TargetId, TargetImages, Uses};
+use yoro::vulkan::{Frame, SourceId, SourceImages, TargetId, TargetImages, Uses};
 
 use crate::context::{YoroContext, create, enter_as, write_bytes};
-use crate::motion::{YoroMotionWarp, read_motion_warp};
-use crate::pose::{YoroPoseWarp, read_pose_warp};
+use crate::motion::YoroMotionWarp;
+use crate::pose::YoroPoseWarp;
 use crate::result::{Failure, YORO_ERROR_NULL, YoroResult};
-use crate::types::other_kind;
-use crate::versioned::{self, Versioned, check_reserved};
-use crate::views::{YoroWarp, read_warp};
+use crate::versioned::{self, Given, Versioned, check_reserved, given};
+use crate::views::YoroWarp;
 use device::{Passes, Vulkan, of_passes};
 
 pub use compose::*;
@@ -173,18 +173,7 @@ pub unsafe extern "C" fn yoro_vk_record(
     frame: *const YoroVkFrame,
 ) -> YoroResult {
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
-    unsafe {
-        enter_vulkan(context, |vulkan| {
-            check_commands(commands)?;
-            // The core counts a warp's rows from the bottom, while row 0 of Vulkan's images is at the top.
-            let warp = read_warp(warp)?.rows_from_top();
-            let (frame, uses) = vulkan.frame(frame)?;
-            match &mut vulkan.passes {
-                Passes::Eyes(gather) => record(gather, commands, &frame, &warp, uses.as_ref()),
-                other => Err(other_kind(other.kind())),
-            }
-        })
-    }
+    unsafe { record(context, commands, warp, frame, Warp::rows_from_top) }
 }
 
 /// Records the synthesis of a view in any pose near the rendered one, in a context of YORO_WARP_KIND_POSE: barriers and
@@ -204,18 +193,7 @@ pub unsafe extern "C" fn yoro_vk_record_pose(
     frame: *const YoroVkFrame,
 ) -> YoroResult {
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
-    unsafe {
-        enter_vulkan(context, |vulkan| {
-            check_commands(commands)?;
-            // As above.
-            let warp = read_pose_warp(warp)?.rows_from_top();
-            let (frame, uses) = vulkan.frame(frame)?;
-            match &mut vulkan.passes {
-                Passes::Pose(any_view) => record(any_view, commands, &frame, &warp, uses.as_ref()),
-                other => Err(other_kind(other.kind())),
-            }
-        })
-    }
+    unsafe { record(context, commands, warp, frame, PoseWarp::rows_from_top) }
 }
 
 /// Records motion vectors of an eye, in a context of YORO_WARP_KIND_MOTION: barriers and three draws. Otherwise it is like
@@ -235,20 +213,9 @@ pub unsafe extern "C" fn yoro_vk_record_motion(
     warp: *const YoroMotionWarp,
     frame: *const YoroVkFrame,
 ) -> YoroResult {
+    let from_top = |motion: &MotionWarp| MotionWarp { warp: motion.warp.rows_from_top(), ..*motion };
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
-    unsafe {
-        enter_vulkan(context, |vulkan| {
-            check_commands(commands)?;
-            let mut warp = read_motion_warp(warp)?;
-            // As above.
-            warp.warp = warp.warp.rows_from_top();
-            let (frame, uses) = vulkan.frame(frame)?;
-            match &mut vulkan.passes {
-                Passes::Motion(motion) => record(motion, commands, &frame, &warp, uses.as_ref()),
-                other => Err(other_kind(other.kind())),
-            }
-        })
-    }
+    unsafe { record(context, commands, warp, frame, from_top) }
 }
 
 fn check_commands(commands: vk::CommandBuffer) -> Result<(), Failure> {
@@ -258,23 +225,35 @@ fn check_commands(commands: vk::CommandBuffer) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Records the passes. The core counts a warp's rows from the bottom, while row 0 of Vulkan's images is at the top:
+/// `from_top` turns them.
+///
 /// # Safety
-/// As for `Pipeline::record`.
-unsafe fn record<W: WarpKind>(
-    passes: &mut Pipeline<W>,
+/// The pointers are null or point to live objects. Otherwise as for `Pipeline::record`.
+unsafe fn record<T: Given>(
+    context: *mut YoroContext,
     commands: vk::CommandBuffer,
-    frame: &Frame,
-    warp: &W,
-    uses: Option<&Uses>,
-) -> Result<(), Failure> {
+    warp: *const T,
+    frame: *const YoroVkFrame,
+    from_top: impl FnOnce(&T::Core) -> T::Core,
+) -> YoroResult
+where
+    T::Core: WarpKind,
+{
     // SAFETY: same contract.
     unsafe {
-        match uses {
-            Some(uses) => passes.record_with_uses(commands, frame, warp, uses)?,
-            None => passes.record(commands, frame, warp)?,
-        }
+        enter_vulkan(context, |vulkan| {
+            check_commands(commands)?;
+            let warp = from_top(&given(warp)?);
+            let (frame, uses) = vulkan.frame(frame)?;
+            let passes = vulkan.passes.of()?;
+            match uses {
+                Some(uses) => passes.record_with_uses(commands, &frame, &warp, &uses)?,
+                None => passes.record(commands, &frame, &warp)?,
+            }
+            Ok(())
+        })
     }
-    Ok(())
 }
 
 impl Vulkan {

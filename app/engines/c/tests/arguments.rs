@@ -6,8 +6,8 @@ use std::ffi::c_char;
 use std::ptr::{null, null_mut};
 
 use common::{
-    Mistakes, framebuffer, gl_info, good_eyes, left_handed, matrices_of, messages, texture, views_of,
-    views_of_matrices, zeroed,
+    Mistakes, check_codes, framebuffer, gl_info, good_eyes, left_handed, matrices_of, messages, texture,
+    views_of, views_of_matrices, zeroed,
 };
 use glow::HasContext as _;
 use proptest::prelude::*;
@@ -18,12 +18,9 @@ use yoro_context::{Backend, Headless};
 #[test]
 fn impossible_eyes_return_their_codes() {
     let nan = f32::NAN;
-    let wrong = |change: &dyn Fn(&mut YoroEyes)| {
+    let code_of = |eyes: &YoroEyes| {
         let mut noted = Vec::new();
-        let mut eyes = good_eyes();
-        change(&mut eyes);
-        eyes.messages = messages(&mut noted);
-        let code = views_of(&eyes).map(drop).unwrap_err();
+        let code = views_of(&YoroEyes { messages: messages(&mut noted), ..*eyes }).unwrap_err();
         if code == YORO_ERROR_STRUCT_SIZE {
             assert!(noted.is_empty(), "nothing is known of such a structure");
         } else {
@@ -63,10 +60,8 @@ fn impossible_eyes_return_their_codes() {
         (&|e| e.fovs[0].angle_left = -0.9, YORO_ERROR_EYES_DENSITY),
         (&|e| (e.fovs[0].angle_up, e.fovs[0].angle_down) = (0.61, -0.5897), YORO_ERROR_EYES_ROWS),
     ];
-    for (i, (change, expected)) in table.iter().enumerate() {
-        assert_eq!(wrong(change), *expected, "row {i}");
-    }
     let eyes = good_eyes();
+    check_codes(&eyes, table, code_of);
     let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
     views.struct_size = 12;
     // SAFETY: null, or structures of at least the size that they state.
@@ -97,12 +92,10 @@ fn impossible_matrices_return_their_codes() {
     let eyes = good_eyes();
     let good = matrices_of(&views_of(&eyes).unwrap(), &eyes);
     assert!(views_of_matrices(&good).is_ok());
-    let wrong = |change: &dyn Fn(&mut YoroMatrices)| {
+    let code_of = |matrices: &YoroMatrices| {
         let mut noted = Vec::new();
-        let mut matrices = good;
-        change(&mut matrices);
-        matrices.messages = messages(&mut noted);
-        let code = views_of_matrices(&matrices).map(drop).unwrap_err();
+        let given = YoroMatrices { messages: messages(&mut noted), ..*matrices };
+        let code = views_of_matrices(&given).unwrap_err();
         assert_eq!(noted.len(), usize::from(code != YORO_ERROR_STRUCT_SIZE));
         code
     };
@@ -134,9 +127,7 @@ fn impossible_matrices_return_their_codes() {
         (&|m| m.view[0][13] += 0.01, YORO_ERROR_EYES_OFF_AXIS),
         (&|m| m.view.swap(0, 1), YORO_ERROR_EYES_IPD),
     ];
-    for (i, (change, expected)) in table.iter().enumerate() {
-        assert_eq!(wrong(change), *expected, "row {i}");
-    }
+    check_codes(&good, table, code_of);
     // What is row-major as a whole is called so.
     let sentence = |change: &dyn Fn(&mut YoroMatrices)| {
         let mut noted = Vec::new();
@@ -317,11 +308,6 @@ fn wrong_images_return_their_codes() {
         // SAFETY: a live context, complete structures, and checks are on.
         unsafe { yoro_gl_synthesize(context, warp, images) }
     };
-    let with = |change: &dyn Fn(&mut YoroGlImages)| {
-        let mut images = good;
-        change(&mut images);
-        call(&views.warp, &images)
-    };
     assert_eq!(call(&views.warp, &good), YORO_OK, "{noted:?}");
     let (red_float, red_16) = (plane(glow::R32F, size), plane(glow::R16, size));
     let table: &Mistakes<YoroGlImages> = &[
@@ -346,10 +332,11 @@ fn wrong_images_return_their_codes() {
         (&|i| i.x = 1, YORO_ERROR_FORMAT),
         (&|i| i.framebuffer = 4_000_000, YORO_ERROR_FORMAT),
     ];
-    for (i, (change, expected)) in table.iter().enumerate() {
-        assert_eq!(with(change), *expected, "row {i}: {:?}", noted.last());
-        assert_eq!(headless.gl().take_errors(), None, "row {i}");
-    }
+    check_codes(&good, table, |images| {
+        let code = call(&views.warp, images);
+        assert_eq!(headless.gl().take_errors(), None, "{images:?}");
+        code
+    });
     // SAFETY: the context is current.
     let renderbuffer = unsafe {
         let renderbuffer = gl.create_renderbuffer().unwrap();
@@ -357,7 +344,8 @@ fn wrong_images_return_their_codes() {
         gl.bind_renderbuffer(glow::RENDERBUFFER, None);
         renderbuffer.0.get()
     };
-    assert_eq!(with(&|i| i.depth_texture = renderbuffer), YORO_ERROR_FORMAT);
+    let other = YoroGlImages { depth_texture: renderbuffer, ..good };
+    assert_eq!(call(&views.warp, &other), YORO_ERROR_FORMAT);
     assert!(noted.last().unwrap().1.contains("is also a renderbuffer"), "{noted:?}");
     let mut capabilities: YoroCapabilities = zeroed(|c: &mut YoroCapabilities| &mut c.struct_size);
     // SAFETY: a live context, and null or a complete structure.

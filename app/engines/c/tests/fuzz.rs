@@ -6,8 +6,8 @@ mod common;
 use std::ptr::{null, null_mut};
 
 use common::{
-    Random, create, framebuffer, gl_info, good_eyes, images, is_documented, matrices_of, motion_of, texture,
-    views_of, views_of_matrices, zeroed,
+    Random, create, framebuffer, gl_info, good_eyes, images, is_documented, levels_of, matrices_of, medium,
+    motion_of, outcome, pose_warp_of, texture, views_of, views_of_matrices, zeroed,
 };
 use glow::HasContext as _;
 use yoro_c::*;
@@ -26,8 +26,6 @@ struct Good {
 impl Good {
     fn new() -> Good {
         let eyes = good_eyes();
-        let mut foveation: YoroFoveation = zeroed(|f: &mut YoroFoveation| &mut f.struct_size);
-        foveation.level = YORO_FOVEATION_MEDIUM;
         let view = YoroView {
             width: 120,
             height: 90,
@@ -35,32 +33,12 @@ impl Good {
             fov: eyes.fovs[1],
             ..YoroView::default()
         };
-        Good { eyes, foveation, view }
+        Good { eyes, foveation: medium(), view }
     }
 }
 
-fn levels_of(
-    eyes: &YoroEyes,
-    foveation: &YoroFoveation,
-) -> Result<([YoroViews; 2], [YoroComposition; 2]), YoroResult> {
-    let mut views = [0; 2].map(|_| zeroed(|v: &mut YoroViews| &mut v.struct_size));
-    let mut compositions = [YoroComposition::default(); 2];
-    let [wide, inset] = &mut views;
-    // SAFETY: complete structures.
-    match unsafe { yoro_levels_from_eyes(eyes, foveation, wide, inset, compositions.as_mut_ptr()) } {
-        YORO_OK => Ok((views, compositions)),
-        code => Err(code),
-    }
-}
-
-fn pose_warp_of(poses: &YoroPoses, source: &YoroView, target: &YoroView) -> Result<YoroPoseWarp, YoroResult> {
-    let (mut poses, mut warp) = (*poses, YoroPoseWarp::default());
-    (poses.source, poses.target, poses.messages) = (source, target, good_eyes().messages);
-    // SAFETY: complete structures.
-    match unsafe { yoro_pose_warp(&poses, &mut warp) } {
-        YORO_OK => Ok(warp),
-        code => Err(code),
-    }
+fn warp_between(poses: &YoroPoses, source: &YoroView, target: &YoroView) -> Result<YoroPoseWarp, YoroResult> {
+    pose_warp_of(&YoroPoses { source, target, messages: good_eyes().messages, ..*poses })
 }
 
 fn good_poses(eyes: &YoroEyes) -> YoroPoses {
@@ -123,7 +101,7 @@ fn damaged_numbers_are_refused_or_make_sense() {
             4 => {
                 let [source, target] = [0; 2].map(|_| random.damaged(&good.view, 0));
                 let poses = random.damaged(&poses, 4);
-                numbers(pose_warp_of(&poses, &source, &target), |warp| {
+                numbers(warp_between(&poses, &source, &target), |warp| {
                     warp.homography
                         .into_iter()
                         .chain(warp.epipole)
@@ -141,9 +119,8 @@ fn damaged_numbers_are_refused_or_make_sense() {
                 let motion = YoroHeadMotion { view: &view, messages: motion.messages, ..damaged };
                 let mut guarded: YoroGuardedView = zeroed(|g: &mut YoroGuardedView| &mut g.struct_size);
                 // SAFETY: complete structures.
-                let code = unsafe { yoro_guarded_view(&motion, &mut guarded) };
-                let outcome = if code == YORO_OK { Ok(guarded.view) } else { Err(code) };
-                numbers(outcome, |view| view.view.into_iter().chain(view.projection).map(f64::from).collect())
+                let found = outcome(unsafe { yoro_guarded_view(&motion, &mut guarded) }, guarded.view);
+                numbers(found, |view| view.view.into_iter().chain(view.projection).map(f64::from).collect())
             }
         };
         accepted += usize::from(!found.is_empty());
@@ -202,7 +179,7 @@ fn an_opengl_host_may_do_anything_with_checks() {
     let [motion, _] = motion_of(&good.eyes, &good.eyes, YORO_VECTORS_EYE).unwrap();
     let target = YoroView { pose: YoroPose { position: [0.04, 1.6, 0.0], ..good.view.pose }, ..good.view };
     let source = YoroView { width: views.source.width, height: views.source.height, ..good.view };
-    let pose = pose_warp_of(&good_poses(&good.eyes), &source, &target).unwrap();
+    let pose = warp_between(&good_poses(&good.eyes), &source, &target).unwrap();
     let size = [source.width, source.height];
     let right = images(gl, glow::RGBA16F, size, [160, 120]);
     let [textures, framebuffers] = names(gl, &right, size);

@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::{create, framebuffer, gl_info, good_eyes, texture, zeroed};
-use yoro::eyes::{DepthRange, Eye, EyePair, FoveationLevel, Frustum, Gaze, GuardBand, Pose};
+use common::{core, create, framebuffer, gl_info, good_eyes, levels_of, medium, texture, zeroed};
+use yoro::eyes::{Eye, FoveationLevel, Gaze, GuardBand};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
@@ -16,42 +16,17 @@ fn wide_eyes() -> YoroEyes {
     eyes
 }
 
-fn medium() -> YoroFoveation {
-    let mut foveation: YoroFoveation = zeroed(|f: &mut YoroFoveation| &mut f.struct_size);
-    foveation.level = YORO_FOVEATION_MEDIUM;
-    foveation
-}
-
-type Found = (YoroViews, YoroViews, [YoroComposition; 2]);
-
-fn levels_of(eyes: &YoroEyes, foveation: &YoroFoveation) -> Result<Found, YoroResult> {
-    let views = || zeroed(|v: &mut YoroViews| &mut v.struct_size);
-    let (mut wide, mut inset, mut compositions) = (views(), views(), [YoroComposition::default(); 2]);
-    // SAFETY: whole structures of the sizes that they state.
-    match unsafe { yoro_levels_from_eyes(eyes, foveation, &mut wide, &mut inset, compositions.as_mut_ptr()) }
-    {
-        YORO_OK => Ok((wide, inset, compositions)),
-        code => Err(code),
-    }
-}
-
 #[test]
 fn levels_are_the_cores_with_rows_from_either_end() {
     let own = wide_eyes();
-    let pair = EyePair {
-        poses: own.poses.map(|pose| Pose { position: pose.position.into(), ..Pose::IDENTITY }),
-        frusta: own.fovs.map(|f| Frustum::from_fov(f.angle_left, f.angle_right, f.angle_up, f.angle_down)),
-        depth: DepthRange::from_distances(own.near_z, own.far_z),
-        size: [own.width, own.height],
-        dominant: Eye::Right,
-    };
+    let pair = core(&own);
     let gaze = glam::Vec3::new(0.2, -0.1, -1.0);
     let foveation = FoveationLevel::Medium.foveation();
     let tracked = YoroFoveation { tracked: 1, gaze: gaze.to_array(), ..medium() };
     for (given, gaze) in [(medium(), Gaze::Axes(pair.axes())), (tracked, Gaze::Direction(gaze))] {
         let core = pair.stereo_views(foveation.as_ref(), gaze).unwrap();
         for rows in [YORO_ROWS_UP, YORO_ROWS_DOWN] {
-            let (wide, inset, compositions) = levels_of(&YoroEyes { rows, ..own }, &given).unwrap();
+            let ([wide, inset], compositions) = levels_of(&YoroEyes { rows, ..own }, &given).unwrap();
             for (views, level) in [(&wide, core.wide), (&inset, core.inset.unwrap())] {
                 let core = level.synthesis_views(GuardBand::Distance(1.0)).unwrap();
                 assert_eq!([views.source.width, views.source.height], core.source.size);
@@ -80,7 +55,7 @@ fn levels_are_the_cores_with_rows_from_either_end() {
         }
     }
     let off = YoroFoveation { level: YORO_FOVEATION_OFF, ..medium() };
-    let (wide, inset, compositions) = levels_of(&own, &off).unwrap();
+    let ([wide, inset], compositions) = levels_of(&own, &off).unwrap();
     assert_eq!((Ok(wide), inset.source.width), (common::views_of(&own), 0));
     assert_eq!(compositions[0].inset_width, 0);
     for wrong in [
@@ -102,7 +77,7 @@ fn wrong_compositions_return_their_codes() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl().raw();
     let eyes = wide_eyes();
-    let (_, inset, compositions) = levels_of(&eyes, &medium()).unwrap();
+    let ([_, inset], compositions) = levels_of(&eyes, &medium()).unwrap();
     let own = compositions[YORO_EYE_RIGHT as usize];
     let mut noted = Vec::new();
     let info = YoroGlInfo { composes: 1, ..gl_info(&mut noted) };

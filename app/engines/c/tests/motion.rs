@@ -4,9 +4,8 @@ mod common;
 
 use std::ptr::{null, null_mut};
 
-use common::{create, gl_info, good_eyes, images, motion_of as warps, views_of, zeroed};
-use yoro::eyes::{DepthConvention, DepthRange, EyePair, Frustum, GuardBand, MotionWarp, Ndc, Pose};
-use yoro::eyes::{Eye, VectorSpace, VectorsOf};
+use common::{core, create, gl_info, good_eyes, images, motion_of as warps, views_of, zeroed};
+use yoro::eyes::{GuardBand, MotionWarp, Ndc, VectorSpace, VectorsOf};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
@@ -18,17 +17,6 @@ fn previous_eyes() -> YoroEyes {
     eyes
 }
 
-fn core(eyes: &YoroEyes) -> EyePair {
-    let depth = DepthRange { near: eyes.near_z, far: eyes.far_z, convention: DepthConvention::Standard };
-    let fov = |f: YoroFov| Frustum::from_fov(f.angle_left, f.angle_right, f.angle_up, f.angle_down);
-    let pose = |p: YoroPose| Pose {
-        position: p.position.into(),
-        orientation: glam::Quat::from_array(p.orientation),
-    };
-    let size = [eyes.width, eyes.height];
-    EyePair { poses: eyes.poses.map(pose), frusta: eyes.fovs.map(fov), depth, size, dominant: Eye::Right }
-}
-
 fn the_cores(eyes: &YoroEyes, previous: &YoroEyes, space: VectorSpace) -> [MotionWarp; 2] {
     let [now, then] =
         [eyes, previous].map(|eyes| core(eyes).synthesis_views(GuardBand::Distance(1.0)).unwrap());
@@ -38,17 +26,13 @@ fn the_cores(eyes: &YoroEyes, previous: &YoroEyes, space: VectorSpace) -> [Motio
 #[test]
 fn the_law_is_the_cores() {
     let (eyes, previous) = (good_eyes(), previous_eyes());
-    for (vectors, of, clip, ndc) in [
-        (YORO_VECTORS_EYE, VectorsOf::Eye, YORO_CLIP_OPENGL, Ndc::MinusOneToOne),
-        (YORO_VECTORS_EYE, VectorsOf::Eye, YORO_CLIP_VULKAN, Ndc::ZeroToOne),
-    ] {
+    for (clip, ndc) in [(YORO_CLIP_OPENGL, Ndc::MinusOneToOne), (YORO_CLIP_VULKAN, Ndc::ZeroToOne)] {
         let [eyes, previous] = [YoroEyes { clip, ..eyes }, YoroEyes { clip, ..previous }];
-        let got = warps(&eyes, &previous, vectors).unwrap();
-        for (got, want) in got.iter().zip(the_cores(&eyes, &previous, VectorSpace { ndc, of })) {
-            assert_eq!([got.per_z, got.per_depth, got.constant], {
-                let law = want.law;
-                [law.per_z, law.per_depth, law.constant]
-            });
+        let got = warps(&eyes, &previous, YORO_VECTORS_EYE).unwrap();
+        let space = VectorSpace { ndc, of: VectorsOf::Eye };
+        for (got, want) in got.iter().zip(the_cores(&eyes, &previous, space)) {
+            let law = want.law;
+            assert_eq!([got.per_z, got.per_depth, got.constant], [law.per_z, law.per_depth, law.constant]);
             assert_eq!(
                 [got.warp.source_width, got.warp.target_height],
                 [want.warp.source_size[0], want.warp.target_size[1]]

@@ -4,7 +4,10 @@ mod common;
 
 use std::ptr::null;
 
-use common::{create, gl_info, good_eyes, images, views_of, zeroed};
+use common::{
+    Mistakes, check_codes, create, gl_info, good_eyes, images, outcome, pose_warp_of as warp_of, views_of,
+    zeroed,
+};
 use glam::{DVec3, EulerRot, Quat};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -46,15 +49,6 @@ fn poses(source: &YoroView, target: &YoroView, rows: YoroRows) -> YoroPoses {
     poses
 }
 
-fn warp_of(poses: &YoroPoses) -> Result<YoroPoseWarp, YoroResult> {
-    let mut warp = YoroPoseWarp::default();
-    // SAFETY: complete structures, and what is refused.
-    match unsafe { yoro_pose_warp(poses, &mut warp) } {
-        YORO_OK => Ok(warp),
-        code => Err(code),
-    }
-}
-
 fn the_cores(warp: &PoseWarp) -> YoroPoseWarp {
     YoroPoseWarp {
         source_width: warp.source_size[0],
@@ -90,20 +84,18 @@ fn the_warp_is_the_cores_with_rows_from_either_end() {
 
     let behind = view([3.0, 1.6, -20.0], [1.5, 0.0, 0.0], SIZE);
     let nowhere = view([f32::NAN, 0.0, 0.0], [0.0; 3], SIZE);
+    let mistakes: &Mistakes<YoroPoses> = &[
+        (&|p| p.target = &behind, YORO_ERROR_VALUE),
+        (&|p| p.source = &nowhere, YORO_ERROR_VALUE),
+        (&|p| p.near_z = 50.0, YORO_ERROR_VALUE),
+        (&|p| p.depth = 2, YORO_ERROR_VALUE),
+        (&|p| p.rows = 2, YORO_ERROR_VALUE),
+        (&|p| p.reserved = 1, YORO_ERROR_VALUE),
+        (&|p| p.target = null(), YORO_ERROR_NULL),
+        (&|p| p.struct_size = 8, YORO_ERROR_STRUCT_SIZE),
+    ];
     let good = poses(&source, &target, YORO_ROWS_UP);
-    let with = |change: &dyn Fn(&mut YoroPoses)| {
-        let mut changed = good;
-        change(&mut changed);
-        warp_of(&changed).map(drop)
-    };
-    assert_eq!(with(&|p| p.target = &behind), Err(YORO_ERROR_VALUE));
-    assert_eq!(with(&|p| p.source = &nowhere), Err(YORO_ERROR_VALUE));
-    assert_eq!(with(&|p| p.near_z = 50.0), Err(YORO_ERROR_VALUE));
-    assert_eq!(with(&|p| p.depth = 2), Err(YORO_ERROR_VALUE));
-    assert_eq!(with(&|p| p.rows = 2), Err(YORO_ERROR_VALUE));
-    assert_eq!(with(&|p| p.reserved = 1), Err(YORO_ERROR_VALUE));
-    assert_eq!(with(&|p| p.target = null()), Err(YORO_ERROR_NULL));
-    assert_eq!(with(&|p| p.struct_size = 8), Err(YORO_ERROR_STRUCT_SIZE));
+    check_codes(&good, mistakes, |poses| warp_of(poses).unwrap_err());
 }
 
 #[test]
@@ -117,10 +109,7 @@ fn the_guarded_view_is_the_cores() {
     let of = |motion: &YoroHeadMotion| {
         let mut guarded: YoroGuardedView = zeroed(|g: &mut YoroGuardedView| &mut g.struct_size);
         // SAFETY: complete structures, and what is refused.
-        match unsafe { yoro_guarded_view(motion, &mut guarded) } {
-            YORO_OK => Ok(guarded),
-            code => Err(code),
-        }
+        outcome(unsafe { yoro_guarded_view(motion, &mut guarded) }, guarded)
     };
     let up = of(&motion).unwrap();
     let down = of(&YoroHeadMotion { rows: YORO_ROWS_DOWN, ..motion }).unwrap();

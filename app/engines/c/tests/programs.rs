@@ -325,18 +325,8 @@ fn csharp_calls_the_library() {
     let mut matrices = common::matrices_of(&views, &eyes);
     matrices.guard_band = eyes.guard_band;
     matrices.view.iter_mut().for_each(|view| view[8..12].iter_mut().for_each(|z| *z = -*z));
-    let mut of_matrices: YoroViews = common::zeroed(|v: &mut YoroViews| &mut v.struct_size);
-    let mut foveation: YoroFoveation = common::zeroed(|f: &mut YoroFoveation| &mut f.struct_size);
-    foveation.level = YORO_FOVEATION_MEDIUM;
-    let (mut wide, mut inset) = (of_matrices, of_matrices);
-    // SAFETY: the composition has only numbers, for which zeros are valid.
-    let mut compositions: [YoroComposition; 2] = unsafe { std::mem::zeroed() };
-    // SAFETY: whole structures of the sizes that they state, and room for two compositions.
-    unsafe {
-        assert_eq!(yoro_views_from_matrices(&matrices, &mut of_matrices), YORO_OK);
-        let of = compositions.as_mut_ptr();
-        assert_eq!(yoro_levels_from_eyes(&eyes, &foveation, &mut wide, &mut inset, of), YORO_OK);
-    }
+    let of_matrices = common::views_of_matrices(&matrices).unwrap();
+    let ([wide, inset], compositions) = common::levels_of(&eyes, &common::medium()).unwrap();
     let mut ways = String::new();
     let mut chooser = std::ptr::null_mut();
     // SAFETY: the chooser is created first and destroyed last.

@@ -8,7 +8,7 @@ use std::ffi::c_char;
 use std::ptr::{null, null_mut};
 
 use ash::vk;
-use common::{Mistakes, Random, is_documented, zeroed};
+use common::{Mistakes, Random, check_codes, is_documented, zeroed};
 use yoro_c::*;
 
 /// A device with a command buffer that is being recorded. It lives as long as the process.
@@ -188,6 +188,20 @@ const WARP: YoroWarp = YoroWarp {
     reserved: 0,
 };
 
+/// A warp between views of the same orientation, the target a little to the right.
+const POSE_WARP: YoroPoseWarp = YoroPoseWarp {
+    source_width: 200,
+    source_height: 120,
+    target_width: 160,
+    target_height: 120,
+    homography: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 20.0, 0.0, 1.0],
+    epipole: [5.0, 0.0, 0.0],
+    source_law: [0.0, 10.0],
+    target_law: [0.0, 10.0],
+    nearest: 1.0,
+    far_depth: 0.0,
+};
+
 /// Returns a source and a target of 256 x 128 pixels, not registered yet.
 fn images(gpu: &Gpu) -> (YoroVkSource, YoroVkTarget) {
     let color = gpu.image(vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::COLOR_ATTACHMENT, [256, 128]);
@@ -243,11 +257,7 @@ fn uses_memory_and_times_are_those_of_the_core() {
         (&|u| u.target_color.after = discarded, YORO_ERROR_VALUE),
         (&|u| u.target_color.before = discarded, YORO_OK),
     ];
-    for (i, (change, expected)) in table.iter().enumerate() {
-        let mut changed = uses;
-        change(&mut changed);
-        assert_eq!(record(&changed), *expected, "row {i}");
-    }
+    check_codes(&uses, table, record);
     let mut times: YoroTimes = zeroed(|t: &mut YoroTimes| &mut t.struct_size);
     // SAFETY: live handles; the commands have been executed before the last lines.
     unsafe {
@@ -266,20 +276,7 @@ fn a_context_of_any_pose_records_pose_warps() {
     let Some(gpu) = Gpu::open() else { return };
     let info = YoroVkInfo { warp_kind: YORO_WARP_KIND_POSE, ..gpu.info() };
     assert_eq!(create(&YoroVkInfo { warp_kind: 3, ..info }), Err(YORO_ERROR_VALUE));
-    // Both views have the same orientation; the target is a little to the right.
-    let warp = YoroPoseWarp {
-        source_width: 200,
-        source_height: 120,
-        target_width: 160,
-        target_height: 120,
-        homography: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 20.0, 0.0, 1.0],
-        epipole: [5.0, 0.0, 0.0],
-        source_law: [0.0, 10.0],
-        target_law: [0.0, 10.0],
-        nearest: 1.0,
-        far_depth: 0.0,
-    };
-    let mut bytes = 0;
+    let (warp, mut bytes) = (POSE_WARP, 0);
     // SAFETY: live handles and complete structures, and null pointers, which are refused.
     unsafe {
         assert_eq!(yoro_vk_buffer_bytes(&info, &mut bytes), YORO_OK);
@@ -428,17 +425,6 @@ fn a_vulkan_host_may_pass_any_numbers() {
     let info = YoroVkInfo { composes: 1, ..gpu.info() };
     let contexts = kinds.map(|warp_kind| create(&YoroVkInfo { warp_kind, ..info }).unwrap());
     let frames = contexts.map(|context| registered(&gpu, context));
-    let pose = YoroPoseWarp {
-        source_width: 200,
-        source_height: 120,
-        target_width: 160,
-        target_height: 120,
-        homography: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 20.0, 0.0, 1.0],
-        source_law: [0.0, 10.0],
-        target_law: [0.0, 10.0],
-        nearest: 1.0,
-        ..YoroPoseWarp::default()
-    };
     let motion = YoroMotionWarp { warp: WARP, ..YoroMotionWarp::default() };
     let mut accepted = 0;
     for number in 0..CALLS {
@@ -472,7 +458,7 @@ fn a_vulkan_host_may_pass_any_numbers() {
                     assert!(code != YORO_OK || yoro_vk_release_target(context, id) == YORO_OK);
                     code
                 }
-                3 => yoro_vk_record_pose(context, commands, &random.damaged(&pose, 0), &frame),
+                3 => yoro_vk_record_pose(context, commands, &random.damaged(&POSE_WARP, 0), &frame),
                 4 => yoro_vk_record_motion(context, commands, &random.damaged(&motion, 0), &frame),
                 5 => yoro_vk_release_source(context, random.word().max(1000)),
                 6 => yoro_gl_prepare(context, &WARP),
@@ -487,7 +473,7 @@ fn a_vulkan_host_may_pass_any_numbers() {
     // SAFETY: live handles and complete structures; the commands are executed before the contexts go.
     unsafe {
         assert_eq!(yoro_vk_record(contexts[0], gpu.commands, &WARP, &frames[0]), YORO_OK);
-        assert_eq!(yoro_vk_record_pose(contexts[1], gpu.commands, &pose, &frames[1]), YORO_OK);
+        assert_eq!(yoro_vk_record_pose(contexts[1], gpu.commands, &POSE_WARP, &frames[1]), YORO_OK);
         assert_eq!(yoro_vk_record_motion(contexts[2], gpu.commands, &motion, &frames[2]), YORO_OK);
         gpu.device.end_command_buffer(gpu.commands).unwrap();
         assert!(contexts.into_iter().all(|context| yoro_destroy(context) == YORO_OK));
@@ -550,11 +536,7 @@ fn wrong_vulkan_arguments_return_their_codes() {
         (&|i| (i.holes, i.warp_kind) = (YORO_OUTPUT_OPEN_DEPTH, YORO_WARP_KIND_POSE), YORO_ERROR_UNSUPPORTED),
         (&|i| i.max_target_height = u32::MAX, YORO_ERROR_TOO_LARGE),
     ];
-    for (i, (change, expected)) in table.iter().enumerate() {
-        let mut wrong = info;
-        change(&mut wrong);
-        assert_eq!(create(&wrong), Err(*expected), "row {i}");
-    }
+    check_codes(&info, table, |wrong| create(wrong).unwrap_err());
     // SAFETY: null pointers are allowed, and refused with a code.
     unsafe {
         assert_eq!(yoro_vk_create(null(), &mut null_mut()), YORO_ERROR_NULL);
@@ -587,16 +569,15 @@ fn wrong_vulkan_arguments_return_their_codes() {
         // Access without stages.
         (&|s| s.color.before.stages = vk::PipelineStageFlags::empty(), YORO_ERROR_VALUE),
     ];
-    for (i, (change, expected)) in sources.iter().enumerate() {
-        let mut wrong = source;
-        change(&mut wrong);
+    check_codes(&source, sources, |wrong| {
+        let mut id = 0;
         // SAFETY: live images, or what is refused.
-        let code = unsafe { yoro_vk_register_source(context, &wrong, &mut frame.source) };
-        assert_eq!(code, *expected, "row {i}");
-    }
+        unsafe { yoro_vk_register_source(context, wrong, &mut id) }
+    });
     // SAFETY: live handles, or what is refused.
     unsafe {
         assert_eq!(yoro_vk_register_source(context, &source, null_mut()), YORO_ERROR_NULL);
+        assert_eq!(yoro_vk_register_source(context, &source, &mut frame.source), YORO_OK);
         let other =
             YoroVkTarget { color: YoroVkImage { format: vk::Format::R8G8B8A8_SRGB, ..color }, ..target };
         assert_eq!(yoro_vk_register_target(context, &other, &mut frame.target), YORO_ERROR_FORMAT);

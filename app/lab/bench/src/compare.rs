@@ -4,41 +4,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use anyhow::{Context as _, bail};
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use yoro_files::interrupt::{self, Interrupted};
-use yoro_files::{self as files, FileError};
-use yoro_media::PictureError;
-use yoro_metrics::{Comparison, MetricsError, PartQuality, Psnr, Quality, error_map, holes_of_mask};
-
-/// The error when nothing can be compared.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum CompareError {
-    /// A file or folder cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A picture cannot be read or written.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
-    /// The files do not form pairs. Holds the sentence.
-    #[error("{0}")]
-    Unpaired(String),
-    /// Two images cannot be compared.
-    #[error("cannot compare {} with {}: {what}", a.display(), b.display())]
-    Pair {
-        /// The image to judge.
-        a: PathBuf,
-        /// The reference.
-        b: PathBuf,
-        /// The mistake.
-        what: MetricsError,
-    },
-    /// The user has asked to stop.
-    #[error(transparent)]
-    Interrupted(#[from] Interrupted),
-}
+use yoro_files::{self as files, FileError, interrupt};
+use yoro_metrics::{Comparison, PartQuality, Psnr, Quality, error_map, holes_of_mask};
 
 /// The files that are compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -125,12 +96,12 @@ impl Inputs {
     /// Returns the files of each pair, sorted by name, and the files in one folder that the other lacks.
     ///
     /// # Errors
-    /// [`CompareError`] if there is no pair.
-    fn pairs(&self) -> Result<(Vec<PairFiles>, Vec<PathBuf>), CompareError> {
+    /// One with the remedy if there is no pair.
+    fn pairs(&self) -> anyhow::Result<(Vec<PairFiles>, Vec<PathBuf>)> {
         let Inputs { a, b, .. } = self;
         for path in [a, b] {
             if !path.exists() {
-                return Err(FileError::Missing { path: path.clone() }.into());
+                return Err(FileError::Missing(path.clone()).into());
             }
         }
         match (a.is_dir(), b.is_dir()) {
@@ -142,23 +113,21 @@ impl Inputs {
             (a_is_folder, _) => {
                 let (folder, file) = if a_is_folder { (a, b) } else { (b, a) };
                 let (folder, file) = (folder.display(), file.display());
-                let what =
-                    format!("{folder} is a folder and {file} is a file: give two files or two folders");
-                Err(CompareError::Unpaired(what))
+                bail!("{folder} is a folder and {file} is a file: give two files or two folders")
             }
         }
     }
 
-    fn pairs_of_folders(&self) -> Result<(Vec<PairFiles>, Vec<PathBuf>), CompareError> {
+    fn pairs_of_folders(&self) -> anyhow::Result<(Vec<PairFiles>, Vec<PathBuf>)> {
         let a = files::find(&self.a, &yoro_media::EXTENSIONS)?;
         let b = files::find(&self.b, &yoro_media::EXTENSIONS)?;
         let (names, only_a): (Vec<_>, Vec<_>) = a.into_iter().partition(|name| b.binary_search(name).is_ok());
         if names.is_empty() {
-            return Err(CompareError::Unpaired(format!(
+            bail!(
                 "{} and {} have no images of the same name: pairs are files of the same relative path",
                 self.a.display(),
                 self.b.display()
-            )));
+            );
         }
         let only_b = b.into_iter().filter(|name| names.binary_search(name).is_err());
         let unmatched = only_a.into_iter().map(|name| self.a.join(name));
@@ -181,7 +150,7 @@ impl Inputs {
 
 impl CompareReport {
     /// Compares two images, or each pair of two folders, and writes error maps if requested.
-    pub fn of(inputs: &Inputs) -> Result<CompareReport, CompareError> {
+    pub fn of(inputs: &Inputs) -> anyhow::Result<CompareReport> {
         let (files, unmatched) = inputs.pairs()?;
         let bar = ProgressBar::new(files.len() as u64);
         let mut pairs = Vec::with_capacity(files.len());
@@ -250,14 +219,14 @@ impl CompareReport {
     }
 }
 
-fn compare_pair(files: PairFiles, bright_holes: bool) -> Result<Pair, CompareError> {
-    let both = |what| CompareError::Pair { a: files.a.clone(), b: files.b.clone(), what };
+fn compare_pair(files: PairFiles, bright_holes: bool) -> anyhow::Result<Pair> {
+    let both = || format!("cannot compare {} with {}", files.a.display(), files.b.display());
     let (a, b) = (yoro_media::load_color(&files.a)?, yoro_media::load_color(&files.b)?);
     let mask = files.mask.as_deref().map(yoro_media::load_mask).transpose()?;
     let holes = mask.map(|mask| holes_of_mask(&mask, !bright_holes));
-    let comparison = Comparison::of(&a, &b, holes.as_deref()).map_err(both)?;
+    let comparison = Comparison::of(&a, &b, holes.as_deref()).with_context(both)?;
     if let Some(map) = &files.map {
-        yoro_media::save_color(map, &error_map(&a, &b).map_err(both)?)?;
+        yoro_media::save_color(map, &error_map(&a, &b).with_context(both)?)?;
     }
     Ok(Pair { name: files.name, comparison })
 }
@@ -355,7 +324,7 @@ mod tests {
     #[test]
     fn each_mistake_is_one_sentence() {
         let (dir, a, b) = folders();
-        let says = |a: &Path, b: &Path| CompareReport::of(&inputs(a, b)).unwrap_err().to_string();
+        let says = |a: &Path, b: &Path| format!("{:#}", CompareReport::of(&inputs(a, b)).unwrap_err());
         assert!(says(&a, &b.join("same.png")).contains("give two files or two folders"));
         assert!(says(&a, &dir.path().join("none")).contains("none does not exist"));
         let empty = dir.path().join("empty");

@@ -6,27 +6,12 @@ use std::rc::Rc;
 
 use image::{Luma, RgbImage};
 
-use crate::inpaint::{InpaintError, Reprojected};
-use yoro::eyes::{DepthConvention, EyePair, EyesError, GuardBand, SynthesisViews};
+use crate::inpaint::Reprojected;
+use yoro::eyes::{DepthConvention, EyePair, GuardBand, SynthesisViews};
 use yoro_gl::{Context, GlError};
 use yoro_media::{DepthImage, depth_image, rgb_image};
 use yoro_render::stereo::{Offline, PipelineOptions};
 use yoro_render::{GpuScene, Renderer, ViewReader};
-
-/// The error when an image group cannot be made.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum GroupError {
-    /// The other eye cannot be synthesized.
-    #[error(transparent)]
-    Eyes(#[from] EyesError),
-    /// GL refused.
-    #[error(transparent)]
-    Gl(#[from] GlError),
-    /// The other eye sees nothing of the rendered eye's image.
-    #[error(transparent)]
-    Inpaint(#[from] InpaintError),
-}
 
 /// Options of image groups.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -102,14 +87,14 @@ impl GroupRenderer {
     /// Renders both eyes and synthesizes the one that is not dominant.
     ///
     /// # Errors
-    /// [`GroupError::Eyes`] for a pair that synthesis refuses, [`GroupError::Gl`] beyond the driver's limits, and
-    /// [`GroupError::Inpaint`] if the synthesized eye sees nothing of what the other one sees.
+    /// For a pair that synthesis refuses, beyond the driver's limits, and if the synthesized eye sees nothing of what
+    /// the other one sees.
     pub fn render(
         &mut self,
         renderer: &mut Renderer,
         scene: &GpuScene,
         pair: &EyePair,
-    ) -> Result<ImageGroup, GroupError> {
+    ) -> anyhow::Result<ImageGroup> {
         let views = pair.synthesis_views(self.options.guard_band)?;
         let truth = self.reader.color(renderer, scene, &views.target)?;
         let source = self.reader.color(renderer, scene, &views.source)?;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// The machine, program and command of a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// Model name of the processor.
     pub cpu: String,

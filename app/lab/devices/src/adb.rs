@@ -10,9 +10,9 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use super::capture::CaptureError;
 use super::log;
-use yoro_files::{FileError, interrupt};
+use crate::DataError;
+use yoro_files::interrupt;
 
 /// Timeout of a command on the device.
 const COMMAND_TIMEOUT: Duration = Duration::from_secs(60);
@@ -43,26 +43,15 @@ impl Listed {
 
 /// The reason why no measurement can be made on a device: one sentence that names the remedy.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum DeviceError {
     /// The adb server, which runs every command, does not answer. Holds adb's words.
     #[error(
         "adb's server does not answer ({0}): restart it by adb kill-server and adb start-server, and use one version of adb only"
     )]
     Server(String),
-    /// The program adb was not found. Holds the places that were searched.
-    #[error(
-        "adb was not found in {0}: install Android's platform tools (Debian and Ubuntu: apt install adb), or name its file"
-    )]
+    /// The program adb was not found, or does not start. Holds the sentence.
+    #[error("{0}")]
     NoAdb(String),
-    /// The program adb exists, but does not start.
-    #[error("{} does not start ({source}): name another one", program.display())]
-    Start {
-        /// The program.
-        program: PathBuf,
-        /// The system's reason.
-        source: std::io::Error,
-    },
     /// No device is connected.
     #[error(
         "no device is connected: turn on USB debugging in its developer options, use a data cable, and look with yoro device list"
@@ -88,16 +77,6 @@ pub enum DeviceError {
         /// The device's serial number, as adb lists it.
         serial: String,
     },
-    /// The installation failed.
-    #[error("{} cannot be installed on {serial}: {reason} (docs/measuring.md has the remedies)", apk.display())]
-    Install {
-        /// The device's serial number, as adb lists it.
-        serial: String,
-        /// The APK file.
-        apk: PathBuf,
-        /// The reason in adb's words.
-        reason: String,
-    },
     /// Power cannot be measured because the device is plugged in.
     #[error(
         "{serial} is plugged in, and a charging battery says nothing of the device's power: measure over Wi-Fi ({}), or allow a plugged-in device for everything but power",
@@ -109,7 +88,7 @@ pub enum DeviceError {
         /// The device's address in the wireless network, if it has one.
         address: Option<String>,
     },
-    /// The device's state would spoil a measurement. Holds the sentence.
+    /// The application cannot be installed, or the device's state would spoil a measurement. Holds the sentence.
     #[error("{0}")]
     Unfit(String),
     /// A command on the device failed.
@@ -125,12 +104,9 @@ pub enum DeviceError {
     /// The user has asked to stop.
     #[error("interrupted: what was captured is kept, and the same command goes on")]
     Interrupted,
-    /// A capture cannot be written.
+    /// A run cannot be read or written.
     #[error(transparent)]
-    Capture(#[from] CaptureError),
-    /// A file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
+    Data(#[from] DataError),
 }
 
 impl DeviceError {
@@ -211,7 +187,12 @@ impl Adb {
         let program = program.map(|path| std::path::absolute(&path).unwrap_or(path));
         let looked =
             given.map_or("PATH, ANDROID_HOME and ANDROID_SDK_ROOT".into(), |path| path.display().to_string());
-        let adb = Adb { program: program.ok_or(DeviceError::NoAdb(looked))? };
+        let missing = || {
+            DeviceError::NoAdb(format!(
+                "adb was not found in {looked}: install Android's platform tools (Debian and Ubuntu: apt install adb), or name its file"
+            ))
+        };
+        let adb = Adb { program: program.ok_or_else(missing)? };
         adb.start_server()?;
         Ok(adb)
     }
@@ -253,7 +234,8 @@ impl Adb {
     }
 
     fn does_not_start(&self, source: std::io::Error) -> DeviceError {
-        DeviceError::Start { program: self.program.clone(), source }
+        let program = self.program.display();
+        DeviceError::NoAdb(format!("{program} does not start ({source}): name another one"))
     }
 
     /// Returns the connected devices in adb's order.
@@ -353,15 +335,11 @@ impl AdbOutput {
 #[derive(Clone, Debug)]
 pub struct Device {
     adb: Adb,
-    serial: String,
+    /// The device's serial number, as adb lists it.
+    pub serial: String,
 }
 
 impl Device {
-    /// The device's serial number, as adb lists it.
-    pub fn serial(&self) -> &str {
-        &self.serial
-    }
-
     /// Returns the device's serial number, which does not depend on how it is connected. Emulators of one image all
     /// have the same number (`EMULATOR34X1X19X0`), so for them this is the name in adb's list.
     pub(crate) fn serial_number(&self) -> Result<String, DeviceError> {
@@ -432,7 +410,11 @@ impl Device {
         let all = format!("{}\n{}", said.stdout, said.stderr);
         let failure = all.lines().find_map(|line| line.split_once("Failure [")?.1.split(']').next());
         let reason = failure.map_or_else(|| said.reason(), str::to_owned);
-        Err(DeviceError::Install { serial: self.serial.clone(), apk: apk.into(), reason })
+        Err(DeviceError::Unfit(format!(
+            "{} cannot be installed on {}: {reason} (docs/measuring.md has the remedies)",
+            apk.display(),
+            self.serial
+        )))
     }
 
     /// Follows the device's log for the tags of [`super::log`], with times in seconds since 1970. Starts at the first

@@ -6,12 +6,13 @@
 //! therefore recognised by their content; the names of files only decide which files are read.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use yoro_files::{self as files, FileError};
+use yoro_files as files;
 use yoro_settings::telemetry::{LOG_TAG, Line, Pictures};
 
-use crate::capture::{CaptureError, DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
+use crate::DataError;
+use crate::capture::{DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
 use crate::log::{self, Kind, SIMULATED_MARK};
 use crate::reading::{LineContent, Reading};
 
@@ -23,27 +24,6 @@ pub(crate) const PICTURE_CHECK: &str = "loop-1-";
 const WARM_UP_S: f64 = 5.0;
 /// Full names or extensions of the files that are read.
 const LOGS: [&str; 4] = ["logcat", "log", "txt", "json"];
-
-/// The error of reading a farm's results.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FarmError {
-    /// A file cannot be read.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A capture cannot be written.
-    #[error(transparent)]
-    Capture(#[from] CaptureError),
-    /// No file has lines of a game loop.
-    #[error(
-        "no file below {} has a line of a game loop (run={RUN}...): name the folder with a folder for each device, with archives unpacked",
-        folder.display()
-    )]
-    Nothing {
-        /// The folder.
-        folder: PathBuf,
-    },
-}
 
 /// Returns the command that plays scenarios on devices of Firebase Test Lab. A device is a model of `gcloud firebase
 /// test android models list`, optionally with `=` and a version.
@@ -65,7 +45,7 @@ pub fn command(apk: &str, scenarios: &[u32], devices: &[String]) -> String {
 ///
 /// If several files have lines of the same step, such as the log and the results, a file with the whole step is
 /// preferred, then the one with the most samples.
-pub fn read(folder: &Path, out: &Path) -> Result<Vec<RunInfo>, FarmError> {
+pub fn read(folder: &Path, out: &Path) -> Result<Vec<RunInfo>, DataError> {
     let mut found: BTreeMap<(String, String), Step> = BTreeMap::new();
     let is_log = |path: &Path| path.ends_with(LOGS[0]) || files::has_extension(path, &LOGS);
     for path in files::find_wanted(folder, is_log)? {
@@ -80,9 +60,12 @@ pub fn read(folder: &Path, out: &Path) -> Result<Vec<RunInfo>, FarmError> {
         }
     }
     if found.is_empty() {
-        return Err(FarmError::Nothing { folder: folder.into() });
+        return Err(DataError::Unusable(format!(
+            "no file below {} has a line of a game loop (run={RUN}...): name the folder with a folder for each device, with archives unpacked",
+            folder.display()
+        )));
     }
-    found.into_iter().map(|((device, run), step)| Ok(step.write(&device, &run, out)?)).collect()
+    found.into_iter().map(|((device, run), step)| step.write(&device, &run, out)).collect()
 }
 
 /// Returns the name of the device's folder: the first part of `path`, or the name of `folder` itself.
@@ -159,7 +142,7 @@ impl Step {
         (self.is_whole, self.samples.len())
     }
 
-    fn write(self, device: &str, run: &str, out: &Path) -> Result<RunInfo, CaptureError> {
+    fn write(self, device: &str, run: &str, out: &Path) -> Result<RunInfo, DataError> {
         let length = self.samples.last().map_or(0.0, |last| last.time_s);
         let warm_up_s = if length > 2.0 * WARM_UP_S { WARM_UP_S } else { 0.0 };
         let mut faults = self.reading.faults();
@@ -297,9 +280,9 @@ mod tests {
         let report = serde_json::to_string(&report).unwrap();
         assert!(report.contains("husky") && report.contains("plugged in"), "{report}");
 
-        assert!(matches!(read(&out.join("nothing"), &out), Err(FarmError::File(_))));
+        assert!(matches!(read(&out.join("nothing"), &out), Err(DataError::File(_))));
         put("empty/logcat", "11-14 22:13:20.123  1  2 I Other: hello\n");
-        assert!(matches!(read(&folder.path().join("empty"), &out), Err(FarmError::Nothing { .. })));
+        assert!(matches!(read(&folder.path().join("empty"), &out), Err(DataError::Unusable(_))));
     }
 
     #[test]

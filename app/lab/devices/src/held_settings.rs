@@ -118,7 +118,8 @@ impl HeldSetting {
 pub struct HeldSettings {
     wanted: Vec<HeldSetting>,
     before: Vec<HeldSetting>,
-    refused: Vec<String>,
+    /// A sentence for each value that the device refused to change.
+    pub(crate) refused: Vec<String>,
     /// The boot id of the device when they were set.
     boot: String,
 }
@@ -136,7 +137,7 @@ impl HeldSettings {
         for (name, value) in phone::properties(device)? {
             ::log::warn!(
                 "{}: {name} is {value}; it is taken away for the time of the measurement",
-                device.serial()
+                device.serial
             );
             settings.push(HeldSetting { place: Place::Property(name), value: None });
         }
@@ -162,11 +163,6 @@ impl HeldSettings {
         }
         self.boot = boot;
         self.hold(device)
-    }
-
-    /// Returns a sentence for each value that the device refused to change.
-    pub fn refused(&self) -> &[String] {
-        &self.refused
     }
 
     fn hold(&mut self, device: &Device) -> Result<(), DeviceError> {
@@ -254,7 +250,7 @@ fn restore_leftovers(device: &Device) -> Result<(), DeviceError> {
     };
     let settings: Vec<HeldSetting> = text.lines().filter_map(HeldSetting::read).collect();
     if !settings.is_empty() {
-        ::log::warn!("{}: what an earlier measurement had left changed is given back", device.serial());
+        ::log::warn!("{}: what an earlier measurement had left changed is given back", device.serial);
     }
     restore(device, &settings)
 }

@@ -13,6 +13,7 @@
 
 pub mod adb;
 pub mod capture;
+mod error;
 pub mod experiment;
 pub mod farm;
 mod follow;
@@ -25,3 +26,5 @@ pub mod report;
 pub mod run;
 pub mod study;
 mod table;
+
+pub use error::DataError;

@@ -4,7 +4,6 @@ use image::RgbImage;
 
 /// The error when two images cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
 pub enum MetricsError {
     /// The sizes differ.
     #[error("the two images differ in size ({}x{} and {}x{}): compare images of one size", a.0, a.1, b.0, b.1)]

@@ -5,7 +5,6 @@ use yoro_files::FileError;
 
 /// The error when a report cannot be made.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum ReportError {
     /// A file could not be written.
     #[error(transparent)]

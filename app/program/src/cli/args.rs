@@ -11,7 +11,7 @@ use anyhow::{Context as _, ensure};
 use clap::builder::{StringValueParser, TypedValueParser};
 
 use crate::cli::choices;
-use yoro_bench::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
+use yoro_bench::inpaint::{self, Patcher, PatcherKind, PatcherOptions};
 use yoro_context::{Backend, ContextError, Headless};
 use yoro_gl::Context;
 
@@ -64,7 +64,7 @@ impl PatcherArgs {
     }
 
     /// Creates the patcher, if one was chosen.
-    pub fn create(&self, gl: &Rc<Context>) -> Result<Option<Box<dyn Patcher>>, InpaintError> {
+    pub fn create(&self, gl: &Rc<Context>) -> anyhow::Result<Option<Box<dyn Patcher>>> {
         let options = PatcherOptions { model: self.model.clone() };
         self.patcher.map(|kind| inpaint::create(gl, kind, &options)).transpose()
     }
@@ -102,11 +102,6 @@ impl FromStr for Shard {
             _ => Err("give the number of the part and of all parts, such as 1/8 up to 8/8".into()),
         }
     }
-}
-
-/// Joins names in the form in which an option takes several of them.
-pub fn list(names: impl IntoIterator<Item = &'static str>) -> String {
-    names.into_iter().collect::<Vec<_>>().join(",")
 }
 
 /// Returns a parser of whole numbers in a range, whose message says which these are.

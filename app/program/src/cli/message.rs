@@ -1,11 +1,9 @@
 //! Errors as messages of the command line: one sentence, followed by the option that provides its remedy, since
 //! libraries do not know the options.
 
-use yoro_bench::bench::record::RecordError;
 use yoro_bench::bench::{Blank, BlankView};
 use yoro_context::ContextError;
 use yoro_devices::adb::{DeviceError, quoted};
-use yoro_devices::experiment::ExperimentError;
 use yoro_files::FileError;
 
 /// Returns the message for an error in one line: its sentence, and the option that provides the remedy, if any.
@@ -34,7 +32,7 @@ fn option(error: &anyhow::Error) -> Option<String> {
     error.chain().find_map(|cause| {
         if let Some(error) = cause.downcast_ref::<DeviceError>() {
             return match error {
-                DeviceError::NoAdb { .. } | DeviceError::Start { .. } => Some("--adb FILE".into()),
+                DeviceError::NoAdb(_) => Some("--adb FILE".into()),
                 DeviceError::Several(_) => Some("--serial SERIAL, --all".into()),
                 DeviceError::NotInstalled { serial, .. } => Some(format!("--serial {}", quoted(serial))),
                 DeviceError::PluggedIn { .. } => Some("--serial SERIAL, --plugged".into()),
@@ -51,13 +49,7 @@ fn option(error: &anyhow::Error) -> Option<String> {
         if let Some(error) = cause.downcast_ref::<BlankView>() {
             return plane(error.blank);
         }
-        use {ExperimentError as Experiment, FileError::InUse, RecordError as Record};
-        let other_out =
-            matches!(cause.downcast_ref(), Some(Experiment::Other { .. } | Experiment::File(InUse { .. })))
-                || matches!(
-                    cause.downcast_ref(),
-                    Some(Record::Parameters { .. } | Record::File(InUse { .. }))
-                );
+        let other_out = matches!(cause.downcast_ref(), Some(FileError::OtherRun(_) | FileError::InUse(_)));
         other_out.then(|| "--out".into())
     })
 }
@@ -76,16 +68,14 @@ mod tests {
     use std::io;
 
     use anyhow::Context as _;
-    use yoro_assets::SceneError;
 
     use super::*;
 
     #[test]
     fn a_cause_is_told_once() {
         let source = io::Error::other("the disk is gone");
-        let error = anyhow::Error::new(SceneError::Read { path: "a.obj".into(), source }).context("scene 1");
-        let message = "scene 1: a.obj cannot be read (the disk is gone): check its permissions and the disk";
-        assert_eq!(sentence(&error), message);
+        let error = anyhow::Error::new(FileError::Read { path: "a.obj".into(), source }).context("scene 1");
+        assert_eq!(sentence(&error), "scene 1: cannot read a.obj: the disk is gone");
         let error = Err::<(), _>(io::Error::other("full")).context("out.png").unwrap_err();
         assert_eq!(of(&error), "out.png: full");
         let source = io::Error::from(io::ErrorKind::StorageFull);

@@ -5,12 +5,13 @@ use std::rc::Rc;
 use std::time::Instant;
 
 use anyhow::bail;
+use clap::ValueEnum as _;
 use glam::Vec3;
 use image::RgbImage;
 use serde::Serialize;
 
 use crate::cli::Subcommand;
-use crate::cli::args::{self, GlArgs, list};
+use crate::cli::args::{self, GlArgs};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::message;
@@ -51,16 +52,8 @@ impl Output {
         matches!(self, Output::Difference | Output::ErrorMap)
     }
 
-    fn name(self) -> &'static str {
-        match self {
-            Output::Left => "left",
-            Output::Right => "right",
-            Output::SideBySide => "side-by-side",
-            Output::CrossEyed => "cross-eyed",
-            Output::Anaglyph => "anaglyph",
-            Output::Difference => "difference",
-            Output::ErrorMap => "error-map",
-        }
+    fn name(self) -> String {
+        self.to_possible_value().expect("none is hidden").get_name().to_owned()
     }
 }
 
@@ -100,7 +93,7 @@ pub struct RenderArgs {
     #[arg(long, default_value = "out", value_name = "FOLDER")]
     out: PathBuf,
     /// The pictures to write
-    #[arg(long, value_enum, value_delimiter = ',', default_value = list([Output::Left, Output::Right, Output::SideBySide].map(Output::name)))]
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "left,right,side-by-side")]
     outputs: Vec<Output>,
     /// Write the frames as an RGBD video instead of pictures, such as `--frames 120 --video a.mp4`: the rendered eye with its guard band, and its
     /// depth beside it. `yoro synthesize FILE` makes stereo of it
@@ -218,10 +211,11 @@ impl Subcommand for RenderArgs {
                 ]);
                 truth_image = Some(real);
             }
-            let stem = frame_stem(&prepared.scene.name, i, heads.len());
+            let scene = &prepared.scene.name;
+            let stem = if heads.len() > 1 { format!("{scene}-{i:04}") } else { scene.clone() };
             let mut pictures = Vec::new();
             for &output in &self.outputs {
-                let path = eyes::picture_path(&self.out, &stem, output.name());
+                let path = eyes::picture_path(&self.out, &stem, &output.name());
                 yoro_media::save_color(&path, &compose(output, &eyes, second, truth_image.as_ref())?)?;
                 pictures.push(path);
             }
@@ -232,11 +226,6 @@ impl Subcommand for RenderArgs {
         bar.finish_and_clear();
         print(self, &reports)
     }
-}
-
-/// Returns the name of a frame's pictures.
-fn frame_stem(scene: &str, frame: usize, frames: usize) -> String {
-    if frames > 1 { format!("{scene}-{frame:04}") } else { scene.to_owned() }
 }
 
 /// Largest number of frames, spread over all, that [`warn_of_blank`] tries.

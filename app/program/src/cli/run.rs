@@ -6,7 +6,7 @@ use std::rc::Rc;
 use anyhow::Context as _;
 
 use crate::cli::Subcommand;
-use crate::cli::args::{self, GlArgs, list};
+use crate::cli::args::{self, GlArgs};
 use crate::cli::bench::header;
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::settings::{self, Compared, Renderer, SettingOptions};
@@ -38,7 +38,7 @@ pub struct RunArgs {
     #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Synthesized.name(), value_name = "METHODS")]
     methods: Vec<Method>,
     /// Pipelines to compare
-    #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_value = list(Pipeline::ALL.map(Pipeline::name)))]
+    #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_value = Pipeline::ALL.map(Pipeline::name).join(","))]
     pipelines: Vec<Pipeline>,
     /// Seed of the built-in scenes
     #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED, value_parser = args::whole::<u64>(0..=u64::MAX), value_name = "N")]
@@ -105,7 +105,7 @@ impl RunArgs {
             }
         }
         bar.finish_and_clear();
-        Ok(Results::read(file)?)
+        Results::read(file)
     }
 
     fn choices(&self) -> Choices {

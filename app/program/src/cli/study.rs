@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail, ensure};
 use crate::cli::Subcommand;
 use crate::cli::args;
 use crate::cli::machine;
-use yoro_devices::study::{Collected, Condition, Plan, Ratings, Study, StudyError, read_trials};
+use yoro_devices::study::{Collected, Condition, Plan, Ratings, Study, read_trials};
 use yoro_files as files;
 use yoro_render::stereo::Method;
 use yoro_scenes::{BUILTINS, DEFAULT_SEED, replacements};
@@ -198,7 +198,10 @@ fn collect(args: &CollectArgs) -> anyhow::Result<()> {
     }
     if collected.ratings.is_empty() {
         let names: Vec<String> = args.logs.iter().map(|path| path.display().to_string()).collect();
-        return Err(StudyError::NoRating(names.join(", ")).into());
+        bail!(
+            "there is no rating in {}: ratings are lines of the viewer's log that begin with rating,v=2, and name a participant",
+            names.join(", ")
+        );
     }
     files::write(&args.out, collected.to_csv().as_bytes())?;
     println!(

@@ -155,7 +155,7 @@ impl Job {
         ];
         for (path, (extensions, allowed)) in outputs {
             if let Some(path) = path.filter(|path| !files::has_extension(path, extensions)) {
-                return Err(PictureError::Extension { path: path.clone(), allowed });
+                return Err(PictureError::extension(path, allowed));
             }
         }
         Ok(())
@@ -209,13 +209,14 @@ fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {
     for path in [color, depth] {
         ensure!(path.exists(), "{} does not exist: check the path", path.display());
     }
+    let (folder, file) = if color.is_dir() { (color, depth) } else { (depth, color) };
+    ensure!(
+        color.is_dir() == depth.is_dir(),
+        "{} is a folder and {} is a file: give two files or two folders",
+        folder.display(),
+        file.display()
+    );
     if !color.is_dir() {
-        ensure!(
-            !depth.is_dir(),
-            "{} is a folder and {} is a file: give two files or two folders",
-            depth.display(),
-            color.display()
-        );
         return Ok(vec![Job {
             color: color.clone(),
             depth: depth.clone(),
@@ -225,12 +226,6 @@ fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {
             source: args.source_out.clone(),
         }]);
     }
-    ensure!(
-        depth.is_dir(),
-        "{} is a folder and {} is a file: give two files or two folders",
-        color.display(),
-        depth.display()
-    );
     let colors = files::find(color, &yoro_media::EXTENSIONS)?;
     let depths = files::find(depth, &yoro_media::EXTENSIONS)?;
     ensure!(

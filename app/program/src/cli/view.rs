@@ -94,7 +94,7 @@ impl Subcommand for ViewArgs {
     /// Draws and writes the picture.
     fn run(&self) -> anyhow::Result<()> {
         if !files::has_extension(&self.png, &["png"]) {
-            return Err(PictureError::Extension { path: self.png.clone(), allowed: ".png" }.into());
+            return Err(PictureError::extension(&self.png, ".png").into());
         }
         let screen = Screen { size: self.screen, dpi: [self.dpi; 2], rotation: Rotation::LandscapeLeft };
         let mut viewer = Cardboard::new(self.resolve()?, screen, &[])?;

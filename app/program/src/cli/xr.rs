@@ -222,11 +222,6 @@ impl Subcommand for XrArgs {
     }
 }
 
-/// Returns the path of the last frame of an eye.
-fn capture_path(folder: &Path, method: MethodChoice, eye: Eye) -> PathBuf {
-    folder.join(format!("{}.{}.png", method.name(), eye.name()))
-}
-
 fn show(
     args: &XrArgs,
     graphics: &HeadlessGraphics,
@@ -336,7 +331,7 @@ fn check_end(frames: Option<u32>, methods: usize, summaries: &[MethodSummary]) -
 }
 
 fn write(folder: &Path, method: MethodChoice, capture: &Capture) -> anyhow::Result<Captured> {
-    let path = |eye| capture_path(folder, method, eye);
+    let path = |eye: Eye| folder.join(format!("{}.{}.png", method.name(), eye.name()));
     for (eye, pixels) in Eye::BOTH.into_iter().zip(&capture.eyes) {
         yoro_media::save_color(&path(eye), &yoro_media::rgb_image(pixels, capture.pair.size))?;
     }

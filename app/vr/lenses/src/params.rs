@@ -15,40 +15,15 @@ const URI_PREFIX: &str = "google.com/cardboard/cfg?p=";
 /// Maximum size of a parameter file in bytes; real ones have about a hundred.
 const MAX_FILE: u64 = 64 << 10;
 
-/// An error in viewer parameters.
+/// An error in viewer parameters, one sentence with the remedy.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum ParamsError {
-    /// The file is missing or cannot be read.
-    #[error(
-        "the viewer file {path} cannot be read ({reason}): give v1, v2, a viewer's URI, or the path of a parameter file"
-    )]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The system's reason.
-        reason: String,
-    },
-    /// The file has neither the stored format nor a URI.
-    #[error(
-        "the viewer file {path} is damaged ({reason}): store the viewer again, or write its URI into the file"
-    )]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: String,
-    },
+    /// The file cannot be read, or has neither the stored format nor a URI.
+    #[error("{0}")]
+    File(String),
     /// The text is not a viewer's URI, or is a damaged one.
-    #[error(
-        "\"{uri}\" is not a viewer's URI ({reason}): it reads https://google.com/cardboard/cfg?p=... as in the viewer's QR code; resolve shortened addresses first"
-    )]
-    Uri {
-        /// The text given.
-        uri: String,
-        /// What is wrong.
-        reason: String,
-    },
+    #[error("{0}")]
+    Uri(String),
 }
 
 /// The edge of the screen from which the lenses' position is measured.
@@ -137,7 +112,7 @@ impl ViewerParams {
     /// Finds a viewer by the user's text: `v1`, `v2`, a URI, or the path of a file ([`ViewerParams::load`]).
     ///
     /// # Errors
-    /// [`ParamsError`], one sentence with the remedy.
+    /// [`ParamsError`].
     pub fn find(text: &str) -> Result<ViewerParams, ParamsError> {
         match text.trim() {
             "v1" => Ok(ViewerParams::v1()),
@@ -160,7 +135,11 @@ impl ViewerParams {
     /// # Errors
     /// [`ParamsError::Uri`].
     pub fn from_uri(uri: &str) -> Result<ViewerParams, ParamsError> {
-        let fail = |reason: String| ParamsError::Uri { uri: uri.to_owned(), reason };
+        let fail = |reason: String| {
+            ParamsError::Uri(format!(
+                "\"{uri}\" is not a viewer's URI ({reason}): it reads https://google.com/cardboard/cfg?p=... as in the viewer's QR code; resolve shortened addresses first"
+            ))
+        };
         let rest = strip_scheme(uri.trim());
         if rest.trim_end_matches('/') == V1_URI {
             return Ok(ViewerParams::v1());
@@ -179,8 +158,12 @@ impl ViewerParams {
             std::fs::File::open(path)?.take(MAX_FILE).read_to_end(&mut bytes)?;
             Ok(bytes)
         };
-        let bytes = read().map_err(|e| ParamsError::Read { path: path.into(), reason: e.to_string() })?;
-        let fail = |reason: String| ParamsError::File { path: path.into(), reason };
+        let file = format!("the viewer file {}", path.display());
+        let remedy = "give v1, v2, a viewer's URI, or the path of a parameter file";
+        let bytes =
+            read().map_err(|e| ParamsError::File(format!("{file} cannot be read ({e}): {remedy}")))?;
+        let remedy = "store the viewer again, or write its URI into the file";
+        let fail = |reason: String| ParamsError::File(format!("{file} is damaged ({reason}): {remedy}"));
         if let Some(stored) = bytes.strip_prefix(&SENTINEL.to_be_bytes()) {
             let (length, message) =
                 stored.split_first_chunk().ok_or_else(|| fail("it ends after its first word".into()))?;

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use toml::{Table, Value};
 
@@ -19,24 +19,12 @@ const MAX_FILE: u64 = 1 << 20;
 
 /// An error in settings: one sentence with the key and the remedy.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SettingsError {
-    /// The file cannot be read.
-    #[error("the settings file {path} cannot be read ({source}): check its path and permissions")]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: std::io::Error,
-    },
-    /// The file is not TOML, a setting does not exist, or its value does not fit. Holds the sentence.
-    #[error("{0}")]
-    Unusable(String),
-}
+#[error("{0}")]
+pub struct SettingsError(String);
 
 impl SettingsError {
     fn value(origin: &str, key: &str, value: &str, remedy: &str) -> SettingsError {
-        SettingsError::Unusable(format!("{origin}: the setting \"{key}\" cannot be {value}: {remedy}"))
+        SettingsError(format!("{origin}: the setting \"{key}\" cannot be {value}: {remedy}"))
     }
 }
 
@@ -206,7 +194,7 @@ impl Settings {
         let foveation = self.foveation.filter(|level| *level != FoveationLevel::Off);
         if let Some(level) = foveation.filter(|_| self.timewarp == Timewarp::Position) {
             let reason = "timewarp=position do not go together, since that moves whole eyes";
-            return Some(SettingsError::Unusable(format!(
+            return Some(SettingsError(format!(
                 "foveation={} and {reason}: leave one of them out",
                 level.name()
             )));
@@ -215,14 +203,14 @@ impl Settings {
             && self.method.first() == Method::Synthesized
         {
             let reason = "the paper's pipeline fills its holes";
-            return Some(SettingsError::Unusable(format!(
+            return Some(SettingsError(format!(
                 "pipeline=paper and holes=rendered do not go together, since {reason}: leave one of them out"
             )));
         }
         let writes_motion = [Method::Synthesized, Method::Conventional].contains(&self.method.first());
         (self.frame_rate != FrameRate::Full && !writes_motion).then(|| {
             let reason = "do not go together, since only yoro and conventional write motion vectors";
-            SettingsError::Unusable(format!(
+            SettingsError(format!(
                 "frame-rate={} and method={} {reason}: leave one of them out",
                 self.frame_rate.name(),
                 self.method.name()
@@ -234,14 +222,17 @@ impl Settings {
     pub fn apply_file_leniently(&mut self, path: &Path) -> Vec<SettingsError> {
         let mut text = String::new();
         let read = std::fs::File::open(path).and_then(|file| file.take(MAX_FILE).read_to_string(&mut text));
-        if let Err(source) = read {
-            return vec![SettingsError::Read { path: path.into(), source }];
+        if let Err(reason) = read {
+            let path = path.display();
+            return vec![SettingsError(format!(
+                "the settings file {path} cannot be read ({reason}): check its path and permissions"
+            ))];
         }
         let table: Table = match text.parse() {
             Ok(table) => table,
             Err(error) => {
                 let what = toml::de::Error::message(&error).trim().replace('\n', " ");
-                return vec![SettingsError::Unusable(format!(
+                return vec![SettingsError(format!(
                     "the settings file {} is not TOML ({what}): write lines such as scene = \"prototype\"",
                     path.display()
                 ))];
@@ -269,7 +260,7 @@ impl Settings {
     pub fn apply(&mut self, pair: &str) -> Result<(), SettingsError> {
         let (key, text) = pair.split_once('=').ok_or_else(|| {
             let what = format!("\"{pair}\" is not a setting: write key=value, such as method=yoro");
-            SettingsError::Unusable(what)
+            SettingsError(what)
         })?;
         let key = key.trim();
         let parsed = find(pair, key)?.parse_into(self, text);
@@ -294,7 +285,7 @@ impl Display for Settings {
 fn find(origin: &str, key: &str) -> Result<&'static Setting, SettingsError> {
     Setting::find(key).ok_or_else(|| {
         let keys = SETTINGS.iter().map(|setting| setting.key).collect::<Vec<_>>().join(", ");
-        SettingsError::Unusable(format!("{origin}: there is no setting \"{key}\"; choose one of {keys}"))
+        SettingsError(format!("{origin}: there is no setting \"{key}\"; choose one of {keys}"))
     })
 }
 

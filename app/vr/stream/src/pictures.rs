@@ -14,7 +14,6 @@ use crate::{Content, DepthSpan, EyeView, ViewRequest};
 
 /// The error when a picture cannot be made.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum StreamError {
     /// The eyes cannot be widened by the guard band.
     #[error(transparent)]

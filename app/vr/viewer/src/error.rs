@@ -7,7 +7,6 @@ use yoro_render::stereo::StereoError;
 /// An error after which the viewer cannot continue. A scene that cannot be loaded is not such an error: its reason is
 /// shown to the user, see [`Viewer::failure`](crate::Viewer::failure).
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum ViewerError {
     /// The viewer's parameters are missing or wrong.
     #[error(transparent)]

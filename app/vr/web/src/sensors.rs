@@ -53,15 +53,13 @@ impl Head {
 /// A sentence with the remedy.
 pub fn find_viewer(text: &str) -> Result<ViewerParams, String> {
     ViewerParams::find(text).map_err(|error| match error {
-        ParamsError::Read { .. } | ParamsError::File { .. } if text.contains("goo.gl") => {
+        ParamsError::File(_) if text.contains("goo.gl") => {
             "This address is shortened: open it, and copy the address that it leads to.".into()
         }
-        ParamsError::Read { .. } | ParamsError::File { .. } => {
-            "This is no viewer: write v1, v2, or the text of the viewer's QR code \
+        ParamsError::File(_) => "This is no viewer: write v1, v2, or the text of the viewer's QR code \
              (https://google.com/cardboard/cfg?p=...)."
-                .into()
-        }
-        _ => error.to_string(),
+            .into(),
+        ParamsError::Uri(sentence) => sentence,
     })
 }
 

@@ -80,8 +80,10 @@ pub type OnCreate = unsafe extern "C" fn(*mut ANativeActivity, *const c_void, us
 
 /// The application's folders, which are removed at the end.
 pub struct Directories {
-    internal: CString,
-    external: CString,
+    /// The path that `getFilesDir` gives.
+    pub internal: CString,
+    /// The path that `getExternalFilesDir(null)` gives.
+    pub external: CString,
     // Only removed if the process exits normally. The host calls `_exit`, so it removes the folder itself.
     root: TempDir,
 }
@@ -109,16 +111,6 @@ impl Directories {
                 .with_context(|| format!("cannot write {}", path.display()))?;
         }
         Ok(Self { internal, external, root })
-    }
-
-    /// Returns the path that `getFilesDir` gives.
-    pub fn internal(&self) -> &CString {
-        &self.internal
-    }
-
-    /// Returns the path that `getExternalFilesDir(null)` gives.
-    pub fn external(&self) -> &CString {
-        &self.external
     }
 
     /// Removes the folders.

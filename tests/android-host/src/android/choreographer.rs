@@ -43,7 +43,7 @@ pub fn run(looper: &ALooper, now: u64) -> bool {
         due
     };
     for callback in &due {
-        let period = host().clock.period();
+        let period = host().clock.period;
         // SAFETY: the application's functions get the data that it passed with them, on the thread that posted them.
         unsafe {
             match callback.callback {

@@ -14,7 +14,8 @@ pub const TAGS: [&str; 2] = ["YORO", "yoro"];
 
 /// Everything logged so far.
 pub struct Log {
-    verbose: bool,
+    /// True if all lines are printed.
+    pub verbose: bool,
     state: Mutex<Collected>,
     abort_message: Mutex<String>,
 }
@@ -34,11 +35,6 @@ impl Log {
     /// Creates an empty log.
     pub fn new(verbose: bool) -> Self {
         Self { verbose, state: Mutex::default(), abort_message: Mutex::default() }
-    }
-
-    /// True if all lines are printed.
-    pub fn is_verbose(&self) -> bool {
-        self.verbose
     }
 
     fn add(&self, priority: c_int, tag: String, text: String) {

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::os::fd::IntoRawFd as _;
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, MutexGuard};
 
 use crate::clock::REFRESH_HZ;
 use crate::host::{Host, host, lock};
@@ -27,6 +27,18 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
     let int = |index: usize| match arguments.get(index) {
         Some(Value::Int(value)) => *value,
         _ => 0,
+    };
+    let texts = |index: usize| match arguments.get(index)? {
+        Value::Object(Some(object)) => {
+            let items = items_of(object)?;
+            Some(items.iter().flatten().filter_map(|item| item.text().map(str::to_owned)).collect::<Vec<_>>())
+        }
+        _ => None,
+    };
+    let items = || items_of(receiver);
+    let extras = || match &receiver.data {
+        Data::Extras(extras) => Some(extras),
+        _ => None,
     };
     let class = match &receiver.data {
         Data::Class(name) => name.as_str(),
@@ -91,33 +103,14 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Value::Int(if is_allowed { 0 } else { -1 })
         }
         "requestPermissions" => {
-            let asked = match arguments.first() {
-                Some(Value::Object(Some(names))) => match &names.data {
-                    Data::Array(names) => {
-                        lock(names).iter().flatten().any(|name| name.text() == Some(CAMERA))
-                    }
-                    _ => false,
-                },
-                _ => false,
-            };
             host.request("a permission");
+            let asked = texts(0)?.iter().any(|name| name == CAMERA);
             host.camera.is_asked.store(asked, Ordering::Release);
             Value::Void
         }
         "isInteractive" => Value::Boolean(true),
         "query" if class == "android/content/ContentResolver" => {
-            let columns = match arguments.get(1) {
-                Some(Value::Object(Some(names))) => match &names.data {
-                    Data::Array(names) => lock(names)
-                        .iter()
-                        .flatten()
-                        .filter_map(|name| name.text().map(str::to_owned))
-                        .collect(),
-                    _ => return None,
-                },
-                _ => Vec::new(),
-            };
-            Value::Object(crate::openxr::query(&text(0)?, columns))
+            Value::Object(crate::openxr::query(&text(0)?, texts(1).unwrap_or_default()))
         }
         "getColumnIndex" | "moveToNext" | "getString" | "close"
             if matches!(receiver.data, Data::Cursor(_)) =>
@@ -198,33 +191,18 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Data::File(file) => Value::Int(lock(file).take()?.into_raw_fd()),
             _ => return None,
         },
-        "getExtras" => match &receiver.data {
-            Data::Extras(extras) if !extras.is_empty() => {
-                Value::object(Object::new("android/os/Bundle", Data::Extras(extras.clone())))
-            }
-            _ => Value::Object(None),
-        },
-        "keySet" => match &receiver.data {
-            Data::Extras(extras) => list("java/util/Set", extras.keys()),
-            _ => return None,
-        },
-        "iterator" => match &receiver.data {
-            Data::Array(items) => {
-                Value::object(Object::new("java/util/Iterator", Data::Array(lock(items).clone().into())))
-            }
-            _ => return None,
-        },
-        "hasNext" => match &receiver.data {
-            Data::Array(items) => Value::Boolean(!lock(items).is_empty()),
-            _ => return None,
-        },
-        "next" => match &receiver.data {
-            Data::Array(items) => Value::Object(lock(items).pop().flatten()),
-            _ => return None,
-        },
+        "getExtras" => {
+            let extras = extras().filter(|extras| !extras.is_empty());
+            Value::Object(extras.map(|extras| Object::new("android/os/Bundle", Data::Extras(extras.clone()))))
+        }
+        "keySet" => list("java/util/Set", extras()?.keys()),
+        "iterator" => Value::object(Object::new("java/util/Iterator", Data::Array(items()?.clone().into()))),
+        "hasNext" => Value::Boolean(!items()?.is_empty()),
+        "next" => Value::Object(items()?.pop().flatten()),
         "getIntExtra" => {
             let default = arguments.get(1).cloned().unwrap_or(Value::Int(0));
-            match extra(receiver, &text(0)?) {
+            let name = text(0)?;
+            match extras().and_then(|extras| extras.get(&name)) {
                 Some(value) if std::mem::discriminant(value) == std::mem::discriminant(&default) => {
                     value.clone()
                 }
@@ -232,7 +210,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             }
         }
         "getCharSequenceExtra" | "getParcelableExtra" | "get" if matches!(receiver.data, Data::Extras(_)) => {
-            match extra(receiver, &text(0)?) {
+            match extras()?.get(&text(0)?) {
                 Some(value @ Value::Object(_)) => value.clone(),
                 _ => Value::Object(None),
             }
@@ -278,9 +256,10 @@ fn list<'a>(class: &str, items: impl DoubleEndedIterator<Item = &'a String>) -> 
     Value::object(Object::new(class, Data::Array(items.into())))
 }
 
-fn extra<'a>(object: &'a Object, key: &str) -> Option<&'a Value> {
+/// Returns the items of an array or iterator.
+fn items_of(object: &Object) -> Option<MutexGuard<'_, Vec<Option<Arc<Object>>>>> {
     match &object.data {
-        Data::Extras(extras) => extras.get(key),
+        Data::Array(items) => Some(lock(items)),
         _ => None,
     }
 }

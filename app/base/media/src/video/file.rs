@@ -237,10 +237,10 @@ impl Reader {
     /// [`VideoError::File`], and [`VideoError::Format`] for a file that is not an MP4 file or has no H.264 video.
     pub fn open(path: &Path) -> Result<Reader, VideoError> {
         if path.is_dir() {
-            return Err(FileError::IsFolder { path: path.into() }.into());
+            return Err(FileError::IsFolder(path.into()).into());
         }
         let failed = |source: io::Error| match source.kind() {
-            io::ErrorKind::NotFound => FileError::Missing { path: path.into() },
+            io::ErrorKind::NotFound => FileError::Missing(path.into()),
             _ => FileError::Read { path: path.into(), source },
         };
         // To open a pipe would wait for somebody who writes.

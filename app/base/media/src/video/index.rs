@@ -139,7 +139,7 @@ impl Index {
     /// # Errors
     /// [`VideoError::NoDepth`] for an ordinary video.
     pub fn rgbd(&self) -> Result<Rgbd, VideoError> {
-        self.depth.ok_or_else(|| VideoError::NoDepth { path: self.path.clone() })
+        self.depth.ok_or_else(|| VideoError::NoDepth(self.path.clone()))
     }
 
     /// Returns the codec's name in the form that browsers take: `avc1.42C01F`.

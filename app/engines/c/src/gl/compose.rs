@@ -5,10 +5,10 @@ use std::num::NonZeroU32;
 use yoro::eyes::Composition;
 use yoro::opengl::{Destination, InsetImage, LevelImage, LevelImages, Part};
 
-use super::{Gl, check, enter_gl};
+use super::{Gl, check, enter_gl, texture};
 use crate::context::YoroContext;
-use crate::levels::{YoroComposition, read_composition};
-use crate::result::{Failure, YORO_ERROR_DRIVER, YORO_ERROR_TOO_LARGE, YORO_ERROR_UNSUPPORTED, YoroResult};
+use crate::levels::YoroComposition;
+use crate::result::{Failure, YORO_ERROR_TOO_LARGE, YORO_ERROR_UNSUPPORTED, YoroResult};
 use crate::versioned::{self, versioned};
 
 /// The images of an eye's levels, and where its image is drawn. Rows are counted from the bottom.
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn yoro_gl_compose(
     // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter_gl(context, |gl| {
-            let composition = read_composition(composition)?;
+            let composition = versioned::given(composition)?;
             gl.compose(&composition, &versioned::read(levels, "levels")?)
         })
     }
@@ -99,25 +99,12 @@ impl Gl {
             check::check_levels(&self.context, composition, &images, &target)?;
         }
         composer.compose(&images, composition, &target);
-        if self.timed {
-            self.end_timed_frame();
-        }
-        match self.check_for_errors() {
-            Some(errors) => Err(Failure::new(
-                YORO_ERROR_DRIVER,
-                format!("GL says {errors}: see the preconditions of yoro_gl_compose"),
-            )),
-            None => Ok(()),
-        }
+        self.end_call("yoro_gl_compose")
     }
 }
 
 impl YoroGlLevels {
     fn images(&self, composition: &Composition) -> Result<LevelImages, Failure> {
-        let texture = |name: u32, what: &str| {
-            let name = NonZeroU32::new(name).map(glow::NativeTexture);
-            name.ok_or_else(|| Failure::value(format!("{what} is 0: give the name of a texture")))
-        };
         let origin = [self.wide_x, self.wide_y];
         let image_size = [self.wide_image_width, self.wide_image_height];
         let wide = LevelImage {

@@ -8,7 +8,7 @@ use yoro::vulkan::{
 use super::types::{YoroVkImage, YoroVkTarget, YoroVkTargetId};
 use super::{Vulkan, check_commands, enter_vulkan, register_images};
 use crate::context::YoroContext;
-use crate::levels::{YoroComposition, read_composition};
+use crate::levels::YoroComposition;
 use crate::result::{Failure, YORO_ERROR_UNSUPPORTED, YoroResult};
 use crate::versioned::{self, check_reserved, versioned};
 
@@ -175,7 +175,7 @@ pub unsafe extern "C" fn yoro_vk_compose(
         enter_vulkan(context, |vulkan| {
             check_commands(commands)?;
             // The core counts rows from the bottom, while row 0 of Vulkan's images is at the top.
-            let composition = read_composition(composition)?.rows_from_top();
+            let composition = versioned::given(composition)?.rows_from_top();
             let frame = versioned::read(frame, "frame")?;
             let frame = ComposedFrame {
                 levels: LevelsId::from_raw(frame.levels),

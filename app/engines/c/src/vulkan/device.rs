@@ -1,15 +1,17 @@
 //! The part of a context that is specific to Vulkan.
 
+use std::any::Any;
 use std::ffi::{CStr, c_char};
 use std::time::Duration;
 
+use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ash::{Device, Instance, StaticFn, vk};
-use yoro::vulkan::{AnyView, Composer, Gather, Host, Motion, PassTimes};
+use yoro::vulkan::{AnyView, Composer, Gather, Host, Motion, PassTimes, Pipeline};
 
 use super::types::{YoroVkInfo, check_format};
 use crate::context::{Backend, YORO_API_VULKAN, YoroCapabilities, YoroTimes};
 use crate::result::{Failure, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL};
-use crate::types::{Kind, warp_kind};
+use crate::types::{Kind, other_kind, warp_kind};
 
 /// The passes for one kind of warp.
 pub(super) enum Passes {
@@ -19,12 +21,14 @@ pub(super) enum Passes {
 }
 
 impl Passes {
-    pub(super) fn kind(&self) -> Kind {
-        match self {
-            Passes::Eyes(_) => Kind::Gather,
-            Passes::Pose(_) => Kind::AnyView,
-            Passes::Motion(_) => Kind::Motion,
-        }
+    /// Returns the pipeline, if it is for this kind of warp.
+    pub(super) fn of<W: WarpKind + 'static>(&mut self) -> Result<&mut Pipeline<W>, Failure> {
+        let (kind, pipeline): (Kind, &mut dyn Any) = match self {
+            Passes::Eyes(gather) => (Kind::Gather, gather),
+            Passes::Pose(any_view) => (Kind::AnyView, any_view),
+            Passes::Motion(motion) => (Kind::Motion, motion),
+        };
+        pipeline.downcast_mut().ok_or_else(|| other_kind(kind))
     }
 }
 

@@ -6,10 +6,26 @@ use std::ffi::{CStr, c_char, c_void};
 use std::mem::MaybeUninit;
 
 use glow::HasContext;
+use yoro::eyes::{DepthRange, Eye, EyePair, Frustum, Pose};
 use yoro_c::*;
 
 /// A change that makes an argument wrong, and the code that the function then returns.
 pub type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
+
+/// Makes each mistake in a structure that is right, and checks the code that is returned then.
+#[track_caller]
+pub fn check_codes<T: Copy>(good: &T, mistakes: &Mistakes<T>, call: impl Fn(&T) -> YoroResult) {
+    for (i, (change, expected)) in mistakes.iter().enumerate() {
+        let mut wrong = *good;
+        change(&mut wrong);
+        assert_eq!(call(&wrong), *expected, "row {i}");
+    }
+}
+
+/// Returns what a function has written, or the code of its failure.
+pub fn outcome<T>(code: YoroResult, written: T) -> Result<T, YoroResult> {
+    if code == YORO_OK { Ok(written) } else { Err(code) }
+}
 
 /// A fixed sequence of numbers that often reveal mistakes (SplitMix64).
 pub struct Random(pub u64);
@@ -97,10 +113,7 @@ pub fn good_eyes() -> YoroEyes {
 pub fn views_of(eyes: &YoroEyes) -> Result<YoroViews, YoroResult> {
     let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
     // SAFETY: both are whole structures of the sizes that they state.
-    match unsafe { yoro_views_from_eyes(eyes, &mut views) } {
-        YORO_OK => Ok(views),
-        code => Err(code),
-    }
+    outcome(unsafe { yoro_views_from_eyes(eyes, &mut views) }, views)
 }
 
 /// Returns the warps of motion to the other eye and to the rendered one.
@@ -114,10 +127,46 @@ pub fn motion_of(
     let mut warps = [YoroMotionWarp::default(); 2];
     let [other, own] = &mut warps;
     // SAFETY: complete structures.
-    match unsafe { yoro_motion_warp(&motion, other, own) } {
-        YORO_OK => Ok(warps),
-        code => Err(code),
-    }
+    outcome(unsafe { yoro_motion_warp(&motion, other, own) }, warps)
+}
+
+/// Returns the levels of foveated eyes, the wide one and the inset, and both eyes' compositions.
+pub fn levels_of(
+    eyes: &YoroEyes,
+    foveation: &YoroFoveation,
+) -> Result<([YoroViews; 2], [YoroComposition; 2]), YoroResult> {
+    let mut views = [0; 2].map(|_| zeroed(|v: &mut YoroViews| &mut v.struct_size));
+    let mut compositions = [YoroComposition::default(); 2];
+    let [wide, inset] = &mut views;
+    // SAFETY: complete structures.
+    let code = unsafe { yoro_levels_from_eyes(eyes, foveation, wide, inset, compositions.as_mut_ptr()) };
+    outcome(code, (views, compositions))
+}
+
+/// Returns a foveation of middle strength.
+pub fn medium() -> YoroFoveation {
+    let mut foveation: YoroFoveation = zeroed(|f: &mut YoroFoveation| &mut f.struct_size);
+    foveation.level = YORO_FOVEATION_MEDIUM;
+    foveation
+}
+
+/// Returns the warp from one view to another.
+pub fn pose_warp_of(poses: &YoroPoses) -> Result<YoroPoseWarp, YoroResult> {
+    let mut warp = YoroPoseWarp::default();
+    // SAFETY: complete structures, and what is refused.
+    outcome(unsafe { yoro_pose_warp(poses, &mut warp) }, warp)
+}
+
+/// Returns eyes with a depth buffer from 0 to 1 for the core.
+pub fn core(eyes: &YoroEyes) -> EyePair {
+    let depth = DepthRange::from_distances(eyes.near_z, eyes.far_z);
+    let fov = |f: YoroFov| Frustum::from_fov(f.angle_left, f.angle_right, f.angle_up, f.angle_down);
+    let pose = |p: YoroPose| Pose {
+        position: p.position.into(),
+        orientation: glam::Quat::from_array(p.orientation),
+    };
+    let size = [eyes.width, eyes.height];
+    EyePair { poses: eyes.poses.map(pose), frusta: eyes.fovs.map(fov), depth, size, dominant: Eye::Right }
 }
 
 pub fn matrices_of(views: &YoroViews, eyes: &YoroEyes) -> YoroMatrices {
@@ -147,10 +196,7 @@ pub fn left_handed(mut matrices: YoroMatrices) -> YoroMatrices {
 pub fn views_of_matrices(matrices: &YoroMatrices) -> Result<YoroViews, YoroResult> {
     let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
     // SAFETY: both are whole structures of the sizes that they state.
-    match unsafe { yoro_views_from_matrices(matrices, &mut views) } {
-        YORO_OK => Ok(views),
-        code => Err(code),
-    }
+    outcome(unsafe { yoro_views_from_matrices(matrices, &mut views) }, views)
 }
 
 /// The loader for the current context.
@@ -216,10 +262,7 @@ pub unsafe fn framebuffer(gl: &glow::Context, attachments: &[(u32, u32)]) -> u32
 pub fn create(info: &YoroGlInfo) -> Result<*mut YoroContext, YoroResult> {
     let mut context = std::ptr::null_mut();
     // SAFETY: a complete structure, and a context is current.
-    match unsafe { yoro_gl_create(info, &mut context) } {
-        YORO_OK => Ok(context),
-        code => Err(code),
-    }
+    outcome(unsafe { yoro_gl_create(info, &mut context) }, context)
 }
 
 /// Creates textures of a source of this format and size, and a framebuffer with colour and depth to draw into.

@@ -119,6 +119,12 @@ impl Device {
         }
         seconds
     }
+
+    /// Returns the choice after the next measurement.
+    fn measured(&mut self) -> Choice {
+        self.measured_after();
+        self.chooser.choice()
+    }
 }
 
 /// Returns the compared times, those of the best picture first.
@@ -131,8 +137,7 @@ fn the_cheaper_way_is_chosen_by_late_times_of_a_timer() {
     for (gpu_ms, path) in [(SIMPLE, StereoPath::Synthesis), ([6.1, 8.9], StereoPath::TwoViews)] {
         for late in [0, 4, 12] {
             let mut device = Device::new(gpu_ms, Some(late));
-            device.measured_after();
-            let choice = device.chooser.choice();
+            let choice = device.measured();
             assert_eq!((choice.path, choice.reason), (path, Reason::Cheaper), "{late} frames late");
             let costs = compared(&choice);
             assert!(
@@ -151,8 +156,7 @@ fn noise_and_spikes_do_not_choose() {
         for (gpu_ms, path) in [([9.0, 7.2], StereoPath::Synthesis), ([7.2, 9.0], StereoPath::TwoViews)] {
             let mut device = Device::new(gpu_ms, Some(4)).noisy(0.2, 0.04, seed);
             device.refresh_hz = 72.0;
-            device.measured_after();
-            assert_eq!(device.chooser.choice().path, path, "seed {seed}: {:?}", device.chooser.choice());
+            assert_eq!(device.measured().path, path, "seed {seed}: {:?}", device.chooser.choice());
         }
     }
 }
@@ -218,8 +222,7 @@ fn another_scene_is_measured_at_once_and_without_prejudice() {
         Choice { path: StereoPath::Synthesis, reason: Reason::Unmeasured, costs_ms: PathTimes::default() };
     assert_eq!(device.chooser.choice(), unmeasured);
     device.now_ns += 20_000_000_000;
-    device.measured_after();
-    let choice = device.chooser.choice();
+    let choice = device.measured();
     assert_eq!((choice.path, choice.reason), (StereoPath::TwoViews, Reason::Cheaper));
 }
 
@@ -235,8 +238,7 @@ fn the_display_hides_what_fits_into_a_refresh() {
         ([20.0, 30.0], StereoPath::Synthesis, Reason::Cheaper, vec![33.333, 33.333]),
     ] {
         let mut device = Device::new(gpu_ms, None);
-        device.measured_after();
-        let choice = device.chooser.choice();
+        let choice = device.measured();
         assert_eq!((choice.path, choice.reason), (path, reason), "{gpu_ms:?}");
         let rounded: Vec<f32> = compared(&choice).iter().map(|ms| (ms * 1e3).round() / 1e3).collect();
         assert_eq!(rounded, costs_ms, "{gpu_ms:?}");
@@ -252,8 +254,7 @@ fn the_display_hides_what_fits_into_a_refresh() {
     // A display of unknown rate sets no pace.
     let mut device = Device::new([8.0, 12.0], None);
     device.refresh_hz = 0.0;
-    device.measured_after();
-    assert_eq!(device.chooser.choice().path, StereoPath::TwoViews);
+    assert_eq!(device.measured().path, StereoPath::TwoViews);
 }
 
 #[test]
@@ -261,8 +262,7 @@ fn holding_the_rate_is_worth_more_than_the_gpus_time() {
     // Two views are cheaper for the GPU, but the CPU cannot draw everything twice in time.
     let mut device = Device::new([6.0, 8.0], Some(4));
     device.cpu_ms = of_two([19.0, 10.0]);
-    device.measured_after();
-    let choice = device.chooser.choice();
+    let choice = device.measured();
     assert_eq!((choice.path, choice.reason), (StereoPath::Synthesis, Reason::HoldsRate));
 }
 
@@ -270,8 +270,7 @@ fn holding_the_rate_is_worth_more_than_the_gpus_time() {
 fn frames_in_place_of_synthesis_do_not_count_for_it() {
     let mut device = Device::new([6.0, 8.0], Some(4));
     device.is_near = true;
-    device.measured_after();
-    let choice = device.chooser.choice();
+    let choice = device.measured();
     assert_eq!((choice.path, choice.reason), (StereoPath::Synthesis, Reason::Incomparable));
     device.is_near = false;
     let rest = device.measured_after();
@@ -340,25 +339,22 @@ fn the_best_picture_that_holds_the_rate_is_chosen() {
         ([60.0, 45.0, 30.0], None, Synthesis, Reason::Cheaper),
     ] {
         let mut device = best(gpu_ms, timer);
-        device.measured_after();
-        let choice = device.chooser.choice();
+        let choice = device.measured();
         assert_eq!((choice.path, choice.reason), (path, reason), "{gpu_ms:?}, timer {timer:?}");
         assert_eq!(compared(&choice).len(), 3);
     }
     // A queue hides most of the refreshes that two views miss.
     let mut device = Device { finished_ms: Some(0.0), ..best([18.3, 9.0, 8.0], None) };
-    device.measured_after();
-    assert_eq!(device.chooser.choice().path, RenderedHoles);
+    assert_eq!(device.measured().path, RenderedHoles);
     // The CPU cannot draw everything twice in time, and no way leaves the GPU room.
     let mut device = best([14.0, 15.9, 15.0], Some(4));
     device.cpu_ms = [19.0, 10.0, 10.0];
-    device.measured_after();
-    assert_eq!(device.chooser.choice().path, Synthesis);
+    assert_eq!(device.measured().path, Synthesis);
     // Of an unknown rate, the cheapest.
     let mut device = best([12.0, 9.0, 8.0], Some(4));
     device.refresh_hz = 0.0;
-    device.measured_after();
-    assert_eq!((device.chooser.choice().path, device.chooser.choice().reason), (Synthesis, Reason::Cheaper));
+    let choice = device.measured();
+    assert_eq!((choice.path, choice.reason), (Synthesis, Reason::Cheaper));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::laws::{on_every_backend, pair, scene};
 use super::parts::{ORIGIN, Picture, Textures};
-use super::state::DepthReader;
+use super::state::read_depth;
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
 use yoro::opengl::{Context, GuessedDepth, Options};
 
@@ -55,7 +55,7 @@ fn guess(gl: &Rc<Context>, picture: &Picture, parts: bool) -> Vec<f32> {
     let [width, height] = picture.warp.source_size;
     let [left, low] = if parts { ORIGIN } else { [0, 0] };
     let image = [left + width, low + height];
-    let bits = DepthReader::new(gl, image).read(gl, guessed.depth);
+    let bits = read_depth(gl, guessed.depth, image);
     let pixels =
         (0..height).flat_map(|y| (0..width).map(move |x| ((low + y) * image[0] + left + x) as usize));
     pixels.map(|i| f32::from_bits(bits[i])).collect()

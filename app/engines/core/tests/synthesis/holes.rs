@@ -7,7 +7,7 @@ use glow::HasContext;
 use super::laws::{on_every_backend, pair, positions, row, scene};
 use super::near_boxes;
 use super::reference::gather_row;
-use super::state::{DepthReader, OUTPUTS, clean, program};
+use super::state::{OUTPUTS, clean, program, read_depth};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, GuardBand, Warp};
 use yoro::opengl::{AnyView, Context, Destination, Gather, GlError, Motion, Options, Outputs, Source};
 use yoro::synthesis::{HoleMark, Holes};
@@ -69,7 +69,7 @@ impl Rig {
             let rows = all.chunks_exact(width).skip(ORIGIN[1] as usize).take(to.size[1] as usize);
             rows.flat_map(|row| row[ORIGIN[0] as usize..][..to.size[0] as usize].to_vec()).collect()
         };
-        let depth = DepthReader::new(gl, self.target.size()).read(gl, self.target.depth().raw());
+        let depth = read_depth(gl, self.target.depth().raw(), self.target.size());
         let around = depth.iter().filter(|z| **z == 0.5f32.to_bits()).count();
         let area = |[w, h]: [u32; 2]| (w * h) as usize;
         assert!(

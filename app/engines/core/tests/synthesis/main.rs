@@ -14,7 +14,7 @@ use std::rc::Rc;
 
 use rand::{Rng, SeedableRng};
 
-use in_memory::{OUTPUTS, Synthesize, SynthesizedImage};
+use in_memory::{OUTPUTS, Synthesize};
 use laws::{Subject, on_every_backend, open_es_300, pair, positions, row, scene};
 use reference::{Picture, gather_row};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityMap, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
@@ -44,7 +44,6 @@ fn synthesize(gl: &Rc<Context>) -> Synthesize {
 const BOUND: f64 = 0.125;
 
 fn agrees_with_reference(gl: &Rc<Context>) {
-    let subject = subject();
     for (seed, dominant, convention, guard) in [
         (1, Eye::Right, DepthConvention::Standard, GuardBand::None),
         (2, Eye::Left, DepthConvention::Standard, GuardBand::Pixels(21)),
@@ -54,13 +53,12 @@ fn agrees_with_reference(gl: &Rc<Context>) {
         let p = pair([150, 40], dominant, 0.063, convention);
         let warp = p.synthesis_views(guard).unwrap().warp;
         let (rgba, depth) = scene(warp.source_size, p.depth, seed);
-        let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
-        let what = format!("{subject:?}, case {seed}");
-        is_its_reference(&result, &rgba, &depth, &warp, &what);
+        is_its_reference(gl, &rgba, &depth, &warp, &format!("case {seed}"));
     }
 }
 
-fn is_its_reference(result: &SynthesizedImage, rgba: &[u8], depth: &[f32], warp: &Warp, what: &str) {
+fn is_its_reference(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &Warp, what: &str) {
+    let result = subject().in_memory(gl).run(rgba, depth, warp);
     let (ws, wt) = (warp.source_size[0] as usize, warp.target_size[0] as usize);
     let last_row = warp.source_size[1] as i32 - 1;
     let mirrored = warp.target_eye == Eye::Right;
@@ -159,9 +157,8 @@ fn near_surfaces_are_found_past_skipped_tiles() {
             let p = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, size, dominant);
             let warp = p.synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
             let (rgba, depth) = near_boxes(warp.source_size, p.depth, seed, boxes);
-            let result = subject().in_memory(gl).run(&rgba, &depth, &warp);
             let what = format!("{boxes} boxes, {dominant:?} dominant, {convention:?}");
-            is_its_reference(&result, &rgba, &depth, &warp, &what);
+            is_its_reference(gl, &rgba, &depth, &warp, &what);
         }
     });
 }
@@ -183,9 +180,7 @@ fn tiles_with_laws_are_their_reference() {
             let depth: Vec<f32> =
                 (0..w * h).map(|i| p.depth.depth(1.0 / nearness((i % w) as f32, (i / w) as f32))).collect();
             let (rgba, _) = scene(warp.source_size, p.depth, 17);
-            let result = subject().in_memory(gl).run(&rgba, &depth, &warp);
-            let what = format!("{dominant:?} dominant");
-            is_its_reference(&result, &rgba, &depth, &warp, &what);
+            is_its_reference(gl, &rgba, &depth, &warp, &format!("{dominant:?} dominant"));
         }
     });
 }
@@ -206,9 +201,7 @@ fn surfaces_that_move_beyond_the_image_hide_nothing() {
             };
             let depth: Vec<f32> = (0..150 * 40).map(|i| p.depth.depth(metres(i))).collect();
             let (rgba, _) = scene(p.size, p.depth, 16);
-            let result = subject().in_memory(gl).run(&rgba, &depth, &warp);
-            let what = format!("{dominant:?} dominant");
-            is_its_reference(&result, &rgba, &depth, &warp, &what);
+            is_its_reference(gl, &rgba, &depth, &warp, &format!("{dominant:?} dominant"));
         }
     });
 }

@@ -81,58 +81,42 @@ impl Lent {
     /// Returns colour, source map and depth, the last one as bits.
     pub fn picture(&self, gl: &Rc<Context>) -> (Vec<u8>, Vec<u32>, Vec<u32>) {
         let size = self.warp.target_size;
-        let reader = DepthReader::new(gl, size);
         (
             self.target.read_rgba8(0, [0, 0], size),
             self.target.read_u32(1, [0, 0], size),
-            reader.read(gl, self.target.depth().raw()),
+            read_depth(gl, self.target.depth().raw(), size),
         )
     }
 }
 
-/// Reads depth as bits, with its own pass: OpenGL ES cannot read depth back directly.
-pub struct DepthReader {
-    program: glow::Program,
-    vertex_array: glow::VertexArray,
-    target: RenderTarget,
-}
-
-impl DepthReader {
-    pub fn new(gl: &Rc<Context>, size: [u32; 2]) -> DepthReader {
-        let fragment =
-            "void main() { bits = floatBitsToUint(texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r); }";
-        DepthReader {
-            program: program(
-                gl,
-                "void main() { gl_Position = vec4(float(gl_VertexID / 2) * 4.0 - 1.0, float(gl_VertexID % 2) * 4.0 - 1.0, 0.0, 1.0); }",
-                &format!("uniform highp sampler2D depth; out uint bits; {fragment}"),
-            ),
-            // SAFETY: plain creation.
-            vertex_array: unsafe { gl.raw().create_vertex_array().unwrap() },
-            target: RenderTarget::new(gl, size, &[(Format::R32Ui, Filter::Nearest)], None).unwrap(),
-        }
+/// Reads depth as bits, with its own pass: OpenGL ES cannot read depth back directly. Leaves a state in which nothing keeps
+/// draws from being visible.
+pub fn read_depth(gl: &Rc<Context>, depth: glow::Texture, size: [u32; 2]) -> Vec<u32> {
+    let raw = gl.raw();
+    let fragment = "void main() { bits = floatBitsToUint(texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r); }";
+    let program = program(
+        gl,
+        "void main() { gl_Position = vec4(float(gl_VertexID / 2) * 4.0 - 1.0, float(gl_VertexID % 2) * 4.0 - 1.0, 0.0, 1.0); }",
+        &format!("uniform highp sampler2D depth; out uint bits; {fragment}"),
+    );
+    let target = RenderTarget::new(gl, size, &[(Format::R32Ui, Filter::Nearest)], None).unwrap();
+    clean(gl);
+    target.bind();
+    // SAFETY: live objects; the vertex array has no attributes.
+    unsafe {
+        let vertex_array = raw.create_vertex_array().unwrap();
+        raw.active_texture(glow::TEXTURE0);
+        raw.bind_texture(glow::TEXTURE_2D, Some(depth));
+        raw.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_COMPARE_MODE, glow::NONE as i32);
+        raw.use_program(Some(program));
+        raw.bind_vertex_array(Some(vertex_array));
+        raw.draw_arrays(glow::TRIANGLES, 0, 3);
+        raw.use_program(None);
+        raw.bind_vertex_array(None);
+        raw.delete_program(program);
+        raw.delete_vertex_array(vertex_array);
     }
-
-    /// Reads depth. Leaves a state in which nothing keeps draws from being visible.
-    pub fn read(self, gl: &Rc<Context>, depth: glow::Texture) -> Vec<u32> {
-        let raw = gl.raw();
-        clean(gl);
-        self.target.bind();
-        // SAFETY: live objects; the vertex array has no attributes.
-        unsafe {
-            raw.active_texture(glow::TEXTURE0);
-            raw.bind_texture(glow::TEXTURE_2D, Some(depth));
-            raw.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_COMPARE_MODE, glow::NONE as i32);
-            raw.use_program(Some(self.program));
-            raw.bind_vertex_array(Some(self.vertex_array));
-            raw.draw_arrays(glow::TRIANGLES, 0, 3);
-            raw.use_program(None);
-            raw.bind_vertex_array(None);
-            raw.delete_program(self.program);
-            raw.delete_vertex_array(self.vertex_array);
-        }
-        self.target.read_u32(0, [0, 0], self.target.size())
-    }
+    target.read_u32(0, [0, 0], size)
 }
 
 pub fn program(gl: &Context, vertex: &str, fragment: &str) -> glow::Program {

@@ -436,6 +436,12 @@ impl<'a> Client<'a> {
         Ok(())
     }
 
+    /// Creates a session and a space, and begins the session if the runtime is ready.
+    pub fn start_session(&mut self) -> Outcome<()> {
+        self.create_session()?;
+        self.poll()
+    }
+
     /// Handles the runtime's events, and begins and ends the session accordingly.
     pub fn poll(&mut self) -> Outcome<()> {
         loop {
@@ -511,15 +517,15 @@ impl<'a> Client<'a> {
 
     /// Creates a swapchain for colour or for depth.
     pub fn chain(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Outcome<Chain> {
-        self.chain_of(&self.chain_info(format, size, layers))
+        self.chain_of(&self.xr, &self.chain_info(format, size, layers))
     }
 
-    fn chain_of(&self, info: &sys::SwapchainCreateInfo) -> Outcome<Chain> {
+    fn chain_of(&self, xr: &Functions, info: &sys::SwapchainCreateInfo) -> Outcome<Chain> {
         let mut handle = sys::Swapchain::NULL;
         // SAFETY: complete structures.
-        let result = unsafe { (self.xr.create_swapchain)(self.session, info, &mut handle) };
+        let result = unsafe { (xr.create_swapchain)(self.session, info, &mut handle) };
         check("xrCreateSwapchain", result)?;
-        let (result, images) = self.drawing.images(self.xr.enumerate_swapchain_images, handle);
+        let (result, images) = self.drawing.images(xr.enumerate_swapchain_images, handle);
         check("xrEnumerateSwapchainImages", result)?;
         Ok(Chain { handle, images })
     }
@@ -528,14 +534,7 @@ impl<'a> Client<'a> {
     pub fn chain_below_the_layer(&self) -> Outcome<Chain> {
         // SAFETY: the instance is also a live instance of the runtime.
         let xr = unsafe { Functions::new(runtime(), self.instance) };
-        let info = self.chain_info(vk::Format::R8G8B8A8_SRGB, [64; 2], 1);
-        let mut handle = sys::Swapchain::NULL;
-        // SAFETY: complete structures.
-        let result = unsafe { (xr.create_swapchain)(self.session, &info, &mut handle) };
-        check("xrCreateSwapchain", result)?;
-        let (result, images) = self.drawing.images(xr.enumerate_swapchain_images, handle);
-        check("xrEnumerateSwapchainImages", result)?;
-        Ok(Chain { handle, images })
+        self.chain_of(&xr, &self.chain_info(vk::Format::R8G8B8A8_SRGB, [64; 2], 1))
     }
 
     /// Returns a function that destroys a swapchain on any thread.

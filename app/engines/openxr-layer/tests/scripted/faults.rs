@@ -11,7 +11,7 @@ use yoro_openxr_stub::script::{At, Event, Fault, Script, State, What};
 
 use crate::checks::{assert_counts, assert_seen, assert_sessions};
 use crate::client::{Client, DEPTH, Failure, Outcome};
-use crate::habits::{Chains, Habits, SRGB, begin_session, frames, run, until_over, with_session};
+use crate::habits::{Habits, SRGB, begin_session, frames, run, until_over, watched_session};
 use crate::world::{faulty, script, watched, with_gpu};
 
 /// When a function of the runtime fails, once or from then on, only the application's call of the same name may fail,
@@ -90,7 +90,7 @@ fn a_refused_or_late_runtime_costs_one_frame() {
             let habits = Habits { frames: 4, ..Habits::PLAIN };
             let seen = watched(faulty(call, nth, result), || drop(run(gpu, &habits).unwrap()));
             assert_counts(&seen, &[[3, 1]], reason);
-            assert_eq!(seen.count_in_log(reason), 1, "{}", seen.layer_log);
+            seen.says_once(reason);
             assert_seen(&seen, &habits, reason);
         }
     });
@@ -140,9 +140,10 @@ fn a_session_stays_stereo_until_it_is_lost() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let event = Event { at: At::Frame(1), what: What::SessionLossPending };
-        let seen = watched(Script { events: vec![event], ..script() }, || {
-            with_session(gpu, &habits, |client, chains| frames(client, chains, &habits, 5)).unwrap();
-        });
+        let seen =
+            watched_session(gpu, Script { events: vec![event], ..script() }, &habits, |client, chains| {
+                frames(client, chains, &habits, 5)
+            });
         assert_sessions(&seen, &habits, &[[5, 0]], "before the loss");
     });
 }
@@ -154,14 +155,12 @@ fn a_release_that_fails_late_costs_one_frame() {
         let habits = Habits::PLAIN;
         let failed = sys::Result::ERROR_RUNTIME_FAILURE;
         // The layer releases its own two images first.
-        let seen = watched(faulty("xrReleaseSwapchainImage", 3, failed), || {
-            let work = |client: &mut Client, chains: &Chains| {
+        let seen =
+            watched_session(gpu, faulty("xrReleaseSwapchainImage", 3, failed), &habits, |client, chains| {
                 let first = frames(client, chains, &habits, 1);
                 assert_eq!(first, Err(Failure { call: "xrEndFrame", result: failed }));
                 frames(client, chains, &habits, 3)
-            };
-            with_session(gpu, &habits, work).unwrap();
-        });
+            });
         assert!(seen.violations().is_empty(), "{:?}", seen.violations());
         let ends = seen.log.iter().filter(|entry| matches!(entry, Entry::Frame { .. })).count();
         assert_eq!(
@@ -179,30 +178,27 @@ fn a_release_that_fails_late_costs_one_frame() {
 fn no_lock_is_held_in_the_runtimes_end_of_a_frame() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
-        let seen = watched(script(), || {
-            let work = |client: &mut Client, chains: &Chains| {
-                let unused = client.chain(SRGB, [64; 2], 1)?;
-                let destroy = Arc::new(client.destroyer(unused));
-                let (sender, receiver) = mpsc::channel();
-                let (sender, receiver) = (Mutex::new(Some(sender)), Mutex::new(receiver));
-                let ended = Arc::new(AtomicBool::new(false));
-                let noted = Arc::clone(&ended);
-                yoro_openxr_stub::watch(Some(Arc::new(move |call: &str| {
-                    if call != "xrEndFrame" {
-                        return;
-                    }
-                    let Some(sender) = sender.lock().unwrap().take() else { return };
-                    let destroy = Arc::clone(&destroy);
-                    thread::spawn(move || sender.send(destroy()));
-                    let result = receiver.lock().unwrap().recv_timeout(Duration::from_secs(10));
-                    noted.store(result == Ok(sys::Result::SUCCESS), Ordering::Relaxed);
-                })));
-                let result = frames(client, chains, &habits, 1);
-                yoro_openxr_stub::watch(None);
-                assert!(ended.load(Ordering::Relaxed), "the swapchain waits for the end of the frame");
-                result
-            };
-            with_session(gpu, &habits, work).unwrap();
+        let seen = watched_session(gpu, script(), &habits, |client, chains| {
+            let unused = client.chain(SRGB, [64; 2], 1)?;
+            let destroy = Arc::new(client.destroyer(unused));
+            let (sender, receiver) = mpsc::channel();
+            let (sender, receiver) = (Mutex::new(Some(sender)), Mutex::new(receiver));
+            let ended = Arc::new(AtomicBool::new(false));
+            let noted = Arc::clone(&ended);
+            yoro_openxr_stub::watch(Some(Arc::new(move |call: &str| {
+                if call != "xrEndFrame" {
+                    return;
+                }
+                let Some(sender) = sender.lock().unwrap().take() else { return };
+                let destroy = Arc::clone(&destroy);
+                thread::spawn(move || sender.send(destroy()));
+                let result = receiver.lock().unwrap().recv_timeout(Duration::from_secs(10));
+                noted.store(result == Ok(sys::Result::SUCCESS), Ordering::Relaxed);
+            })));
+            let result = frames(client, chains, &habits, 1);
+            yoro_openxr_stub::watch(None);
+            assert!(ended.load(Ordering::Relaxed), "the swapchain waits for the end of the frame");
+            result
         });
         assert_counts(&seen, &[[1, 0]], "another thread");
     });

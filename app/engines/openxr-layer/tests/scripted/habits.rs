@@ -5,10 +5,11 @@ use std::ffi::CStr;
 use openxr_sys::ViewConfigurationType as ViewsOf;
 use yoro::eyes::Eye;
 use yoro::vulkan::ash::vk;
+use yoro_openxr_stub::script::Script;
 
 use crate::client::{Chain, Client, DEPTH, Frame, Outcome, Part, Planes, Submitted, View};
 use crate::drawing::Drawing;
-use crate::world::{script, uncounted, watched};
+use crate::world::{Seen, script, uncounted, watched};
 
 pub const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
 pub const D32: vk::Format = vk::Format::D32_SFLOAT;
@@ -104,8 +105,7 @@ pub fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View)
 
 /// Begins a session, and creates its swapchains.
 pub fn begin_session(client: &mut Client, habits: &Habits) -> Outcome<Chains> {
-    client.create_session()?;
-    client.poll()?;
+    client.start_session()?;
     Chains::new(client, habits)
 }
 
@@ -156,17 +156,20 @@ pub fn learn_size<'a>(drawing: impl Into<Drawing<'a>>, name: &'static str) {
     watched(script(), || drop(run(drawing, &Habits { name, frames: 1, ..Habits::PLAIN }).unwrap()));
 }
 
-/// Runs an application with a session and swapchains, which `work` uses.
-pub fn with_session<'a>(
+/// Runs an application with a session and swapchains, which `work` uses, on a runtime that follows a script.
+pub fn watched_session<'a>(
     drawing: impl Into<Drawing<'a>>,
+    script: Script,
     habits: &Habits,
     work: impl FnOnce(&mut Client, &Chains) -> Outcome<()>,
-) -> Outcome<()> {
-    let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
-    let chains = begin_session(&mut client, habits)?;
-    frame(&mut client, &chains, habits)?;
-    work(&mut client, &chains)?;
-    client.destroy_session()
+) -> Seen {
+    watched(script, || {
+        let mut client = Client::new(drawing, habits.name, &[DEPTH]).unwrap();
+        let chains = begin_session(&mut client, habits).unwrap();
+        frame(&mut client, &chains, habits).unwrap();
+        work(&mut client, &chains).unwrap();
+        client.destroy_session().unwrap();
+    })
 }
 
 /// Runs an application with the setting `shrink`, which renders a tiny view beside its own. `show` ends each frame with
@@ -179,8 +182,7 @@ pub fn run_shrunk<'a>(
 ) -> Outcome<()> {
     let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
     client.views = ViewsOf::PRIMARY_STEREO;
-    client.create_session()?;
-    client.poll()?;
+    client.start_session()?;
     let sizes = client.sizes()?;
     assert!(sizes[0] == [16; 2] && sizes[1][0] > 128 && sizes[1][1] == 128, "{sizes:?}");
     let own = Chains::of_size(&client, sizes[1])?;

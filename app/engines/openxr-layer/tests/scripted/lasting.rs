@@ -5,7 +5,7 @@ use yoro_openxr_stub::script::Script;
 use crate::checks::assert_sessions;
 use crate::client::{Client, DEPTH, Layer};
 use crate::drawing::{Drawing, with_gles};
-use crate::habits::{Chains, Habits, begin_rendered, begin_session, frames, run, with_session};
+use crate::habits::{Chains, Habits, begin_rendered, begin_session, frames, run, watched_session};
 use crate::harness::Gpu;
 use crate::world::{allocations, script, uncounted, watched, with_gpu, with_unwatched_gpu};
 
@@ -41,8 +41,7 @@ fn the_recommended_size_stays_in_an_instance_and_is_right_in_the_next() {
             watched(script, || {
                 let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
                 sizes.push(client.sizes().unwrap());
-                client.create_session().unwrap();
-                client.poll().unwrap();
+                client.start_session().unwrap();
                 sizes.push(client.sizes().unwrap());
                 let chains = Chains::new(&client, &habits).unwrap();
                 frames(&mut client, &chains, &habits, 1).unwrap();
@@ -58,8 +57,7 @@ fn the_recommended_size_stays_in_an_instance_and_is_right_in_the_next() {
         let mut exact = [0; 2];
         let seen = watched(script(), || {
             let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
-            client.create_session().unwrap();
-            client.poll().unwrap();
+            client.start_session().unwrap();
             let frame = client.begin_frame().unwrap();
             client.locate(frame).unwrap();
             exact = client.sizes().unwrap()[0];
@@ -112,8 +110,8 @@ const FRAMES: u32 = 300;
 /// Checks that frames leave nothing behind, and that the layer allocates nothing.
 fn steady(drawing: Drawing, script: Script, habits: &Habits) {
     let (mut largest, mut grown) = (0, 0);
-    let seen = watched(Script { pictures: None, log: None, ..script }, || {
-        let work = |client: &mut Client, chains: &Chains| {
+    let seen =
+        watched_session(drawing, Script { pictures: None, log: None, ..script }, habits, |client, chains| {
             frames(client, chains, habits, 100)?;
             let (before, objects) = (resources(), drawing.objects());
             for _ in 0..FRAMES {
@@ -129,9 +127,7 @@ fn steady(drawing: Drawing, script: Script, habits: &Habits) {
             assert_eq!(objects, drawing.objects(), "objects of OpenGL");
             grown = after[2].saturating_sub(before[2]);
             Ok(())
-        };
-        with_session(drawing, habits, work).unwrap();
-    });
+        });
     assert_eq!(seen.counts(), [[u64::from(FRAMES) + 100, 0]], "{}", seen.layer_log);
     println!("{FRAMES} frames: {largest} allocations in the layer in one of them, {grown} bytes more");
     assert_eq!(largest, 0, "the layer allocates in a frame");

@@ -8,7 +8,7 @@ use yoro_openxr_stub::script::{At, Event, Script, What};
 use crate::checks::assert_seen;
 use crate::client::{Client, DEPTH, Failure, Layer, Outcome, Part, Planes, Submitted};
 use crate::habits::{
-    Chains, D32, Habits, SRGB, begin_rendered, begin_session, frame, frames, run, run_shrunk, with_session,
+    Chains, D32, Habits, SRGB, begin_rendered, begin_session, frames, run, run_shrunk, watched_session,
 };
 use crate::harness::Gpu;
 use crate::world::{faulty, script, watched, with_gpu};
@@ -20,12 +20,9 @@ fn refused<T>(call: &'static str, result: Code) -> Outcome<T> {
 /// Runs a session with one view, in which two frames follow the mistakes.
 fn synthesized_after(gpu: &Gpu, what: &str, mistakes: impl FnOnce(&mut Client, &Chains) -> Outcome<()>) {
     let habits = Habits::PLAIN;
-    let seen = watched(script(), || {
-        let work = |client: &mut Client, chains: &Chains| {
-            mistakes(client, chains)?;
-            frames(client, chains, &habits, 2)
-        };
-        with_session(gpu, &habits, work).unwrap();
+    let seen = watched_session(gpu, script(), &habits, |client, chains| {
+        mistakes(client, chains)?;
+        frames(client, chains, &habits, 2)
     });
     assert_eq!(seen.counts(), [[2, 0]], "{what}: {}", seen.layer_log);
     assert_seen(&seen, &habits, what);
@@ -54,15 +51,17 @@ fn an_image_is_released_once() {
         });
         // Errors of a held release that would return for ever are returned once.
         for result in [Code::ERROR_CALL_ORDER_INVALID, Code::ERROR_HANDLE_INVALID] {
-            let seen = watched(faulty("xrReleaseSwapchainImage", 3, result), || {
-                let work = |client: &mut Client, chains: &Chains| {
+            let seen = watched_session(
+                gpu,
+                faulty("xrReleaseSwapchainImage", 3, result),
+                &Habits::PLAIN,
+                |client, chains| {
                     let (begun, submitted) = begin_rendered(client, chains, &Habits::PLAIN)?;
                     assert_eq!(client.show(begun, submitted), refused("xrEndFrame", result));
                     let begun = client.begin_frame()?;
                     client.end_frame(begun, &[])
-                };
-                with_session(gpu, &Habits::PLAIN, work).unwrap();
-            });
+                },
+            );
             assert_eq!(seen.calls().get("xrReleaseSwapchainImage"), Some(&4), "{result:?}");
         }
     });
@@ -111,8 +110,7 @@ fn null_pointers_and_wrong_types_are_refused() {
             watched(Script { visibility_mask: true, ..script() }, || {
                 let mut client = Client::new(gpu, name, &[DEPTH, c"XR_KHR_visibility_mask"]).unwrap();
                 client.views = views;
-                client.create_session().unwrap();
-                client.poll().unwrap();
+                client.start_session().unwrap();
                 let chain = client.chain(SRGB, [64; 2], 1).unwrap();
                 let begun = client.begin_frame().unwrap();
                 for (call, result) in client.calls_with_null(begun, &chain) {
@@ -172,32 +170,22 @@ fn the_runtime_judges_depth() {
         for (reason, verdict, spoil) in cases {
             for takes_depth in [true, false] {
                 let missing = if takes_depth { vec![] } else { vec![DEPTH.to_str().unwrap().to_owned()] };
-                let seen = watched(Script { missing_extensions: missing, ..script() }, || {
-                    let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
-                    let chains = begin_session(&mut client, &habits).unwrap();
-                    frame(&mut client, &chains, &habits).unwrap();
+                let script = Script { missing_extensions: missing, ..script() };
+                let seen = watched_session(gpu, script, &habits, |client, chains| {
                     for _ in 0..2 {
-                        let (begun, submitted) = begin_rendered(&mut client, &chains, &habits).unwrap();
+                        let (begun, submitted) = begin_rendered(client, chains, &habits)?;
                         let depth = submitted.depth.map(|(part, planes)| spoil(part, planes));
                         let shown = client.show(begun, Submitted { depth, ..submitted });
-                        assert_eq!(
-                            shown,
-                            if takes_depth { refused("xrEndFrame", verdict) } else { Ok(()) },
-                            "{reason}"
-                        );
+                        let expected = if takes_depth { refused("xrEndFrame", verdict) } else { Ok(()) };
+                        assert_eq!(shown, expected, "{reason}");
                         if shown.is_err() {
-                            client.end_frame(begun, &[]).unwrap();
+                            client.end_frame(begun, &[])?;
                         }
                     }
-                    client.destroy_session().unwrap();
+                    Ok(())
                 });
-                assert_eq!(
-                    seen.count_in_log("the same image for both eyes"),
-                    1,
-                    "{reason}: {}",
-                    seen.layer_log
-                );
-                assert_eq!(seen.count_in_log(reason), 1, "{reason}: {}", seen.layer_log);
+                seen.says_once("the same image for both eyes");
+                seen.says_once(reason);
                 assert_eq!(seen.frames().len(), if takes_depth { 0 } else { 2 }, "{reason}");
             }
         }

@@ -8,7 +8,8 @@ use yoro_openxr_stub::script::{At, Event, Script, What};
 use crate::checks::{assert_own_eyes, assert_seen, psnr, truth};
 use crate::client::{Client, DEPTH, Failure, Layer};
 use crate::habits::{
-    Chains, Habits, begin_rendered, begin_session, frames, learn_size, render, run, run_shrunk, with_session,
+    Chains, Habits, begin_rendered, begin_session, frames, learn_size, render, run, run_shrunk,
+    watched_session,
 };
 use crate::world::{faulty, script, watched, with_gpu};
 
@@ -21,8 +22,7 @@ fn stereo_passes_through() {
             let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
             client.views = ViewsOf::PRIMARY_STEREO;
             assert_eq!(client.sizes().unwrap(), [[128, 128]; 2]);
-            client.create_session().unwrap();
-            client.poll().unwrap();
+            client.start_session().unwrap();
             let chains = [Chains::new(&client, &habits).unwrap(), Chains::new(&client, &habits).unwrap()];
             for _ in 0..3 {
                 client.poll().unwrap();
@@ -42,12 +42,7 @@ fn stereo_passes_through() {
         for (i, view) in seen.views().iter().enumerate() {
             assert!(psnr(&seen.picture(i), &truth(view, 1)) > 45.0);
         }
-        assert_eq!(
-            seen.count_in_log("passed through: it begins its session with PRIMARY_STEREO"),
-            1,
-            "{}",
-            seen.layer_log
-        );
+        seen.says_once("passed through: it begins its session with PRIMARY_STEREO");
         assert_eq!(seen.counts(), [[0; 2]; 0]);
     });
 }
@@ -96,8 +91,7 @@ fn the_runtime_fills_what_is_chained_to_views() {
                 let [left, right] = script().eyes.map(|eye| eye.fov_degrees);
                 let both = [left[0].min(right[0]), left[1].max(right[1])].map(f32::to_radians);
                 assert_eq!(client.chained_fields_of_view(count).unwrap()[count - 1], both, "{name}");
-                client.create_session().unwrap();
-                client.poll().unwrap();
+                client.start_session().unwrap();
                 let frame = client.begin_frame().unwrap();
                 let located = client.chained_to_located(frame, count).unwrap();
                 assert_eq!(located, vec![[0.1, 50.0]; count], "{name}: located");
@@ -115,12 +109,7 @@ fn a_system_with_one_view_passes_through() {
         let seen = watched(script, || drop(run(gpu, &habits).unwrap()));
         assert!(seen.violations().is_empty(), "{:?}", seen.violations());
         assert_eq!(seen.views().len(), 1);
-        assert_eq!(
-            seen.count_in_log("passed through: the system itself has one view"),
-            1,
-            "{}",
-            seen.layer_log
-        );
+        seen.says_once("passed through: the system itself has one view");
         assert!(psnr(&seen.picture(0), &truth(&seen.views()[0], 1)) > 45.0);
     });
 }
@@ -159,12 +148,7 @@ fn a_view_to_replace_in_an_unknown_swapchain_reaches_the_runtime() {
         });
         assert!(seen.violations().is_empty(), "{:?}", seen.violations());
         assert_eq!((seen.frames().len(), seen.counts().len()), (2, 0), "{}", seen.layer_log);
-        assert_eq!(
-            seen.count_in_log("passed through: the view to replace is in no"),
-            1,
-            "{}",
-            seen.layer_log
-        );
+        seen.says_once("passed through: the view to replace is in no");
     });
 }
 
@@ -173,8 +157,11 @@ fn a_view_to_replace_in_an_unknown_swapchain_reaches_the_runtime() {
 fn waiting_for_an_image_releases_no_other_one() {
     with_gpu(|gpu| {
         let failed = sys::Result::ERROR_RUNTIME_FAILURE;
-        watched(faulty("xrReleaseSwapchainImage", 1, failed), || {
-            let work = |client: &mut Client, chains: &Chains| {
+        watched_session(
+            gpu,
+            faulty("xrReleaseSwapchainImage", 1, failed),
+            &Habits::PLAIN,
+            |client, chains| {
                 client.acquire_only(&chains.color)?;
                 client.acquire_only(&chains.color)?;
                 client.wait_image(&chains.color)?;
@@ -184,9 +171,8 @@ fn waiting_for_an_image_releases_no_other_one() {
                 client.release(&chains.color)?;
                 client.wait_image(&chains.color)?;
                 client.release(&chains.color)
-            };
-            with_session(gpu, &Habits::PLAIN, work).unwrap();
-        });
+            },
+        );
     });
 }
 
@@ -218,8 +204,7 @@ fn what_is_offered_can_be_located() {
             watched(Script { mono, ..script() }, || {
                 let mut client = Client::new(gpu, name, &[DEPTH]).unwrap();
                 client.views = two;
-                client.create_session().unwrap();
-                client.poll().unwrap();
+                client.start_session().unwrap();
                 let frame = client.begin_frame().unwrap();
                 client.views = one;
                 let width = client.locate(frame).unwrap()[0].unwrap().frustum.width();
@@ -255,19 +240,13 @@ fn an_application_can_be_left_alone() {
             assert_eq!(client.configurations().unwrap(), [V::PRIMARY_STEREO, V::PRIMARY_MONO]);
             client.views = V::PRIMARY_STEREO;
             assert_eq!(client.sizes().unwrap(), [[128, 128]; 2]);
-            client.create_session().unwrap();
-            client.poll().unwrap();
+            client.start_session().unwrap();
             let chain = client.chain(crate::habits::SRGB, [128; 2], 1).unwrap();
             client.destroy_chain(chain).unwrap();
             client.destroy_session().unwrap();
         });
         assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-        assert_eq!(
-            seen.count_in_log("passed through: its settings say offer = off"),
-            1,
-            "{}",
-            seen.layer_log
-        );
+        seen.says_once("passed through: its settings say offer = off");
         for call in
             ["xrCreateReferenceSpace", "xrEnumerateSwapchainImages", "xrEnumerateViewConfigurationViews"]
         {

@@ -13,8 +13,7 @@ use crate::checks::{
 use crate::client::{Client, DEPTH, Failure, Layer, Part, Planes, Submitted};
 use crate::drawing::{Drawing, with_gles};
 use crate::habits::{
-    Chains, D32, Habits, SRGB, begin_rendered, begin_session, frame, frames, learn_size, render, run,
-    run_shrunk, with_session,
+    Chains, D32, Habits, SRGB, begin_rendered, frames, learn_size, render, run, run_shrunk, watched_session,
 };
 use crate::world::{faulty, script, watched, with_gpu};
 
@@ -95,14 +94,12 @@ fn canted_and_unequal_eyes_are_served_by_parallel_ones() {
 fn other_layers_stay_as_they_are_and_in_order() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
-        let seen = watched(script(), || {
-            let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
-            let chains = begin_session(&mut client, &habits).unwrap();
-            let panel = client.chain(SRGB, [32, 16], 1).unwrap();
-            frames(&mut client, &chains, &habits, 1).unwrap();
-            let (frame, submitted) = begin_rendered(&mut client, &chains, &habits).unwrap();
-            client.acquire(&panel).unwrap();
-            client.release(&panel).unwrap();
+        let seen = watched_session(gpu, script(), &habits, |client, chains| {
+            let panel = client.chain(SRGB, [32, 16], 1)?;
+            frames(client, chains, &habits, 1)?;
+            let (frame, submitted) = begin_rendered(client, chains, &habits)?;
+            client.acquire(&panel)?;
+            client.release(&panel)?;
             let part = |x| Part { chain: panel.handle, origin: [x, 0], size: [8, 16], layer: 0 };
             let layers = [
                 Layer::Quad(part(0)),
@@ -112,8 +109,7 @@ fn other_layers_stay_as_they_are_and_in_order() {
                 Layer::Projection(vec![Submitted { depth: None, ..submitted }]),
                 Layer::Quad(part(16)),
             ];
-            client.end_frame(frame, &layers).unwrap();
-            client.destroy_session().unwrap();
+            client.end_frame(frame, &layers)
         });
         assert!(seen.violations().is_empty(), "{:?}", seen.violations());
         let frames = seen.frames();
@@ -130,7 +126,7 @@ fn other_layers_stay_as_they_are_and_in_order() {
             })
             .collect();
         assert_eq!(found, ["quad 0", "2 views", "quad 8", "the same twice", "quad 16"]);
-        assert_eq!(seen.count_in_log("submits more than one projection layer"), 1, "{}", seen.layer_log);
+        seen.says_once("submits more than one projection layer");
     });
 }
 
@@ -151,7 +147,7 @@ fn shrink_replaces_the_tiny_view() {
         shrunk();
         let seen = shrunk();
         assert_counts(&seen, &[[3, 0]], "a tiny view");
-        assert_eq!(seen.count_in_log("renders a tiny image for the left eye"), 1, "{}", seen.layer_log);
+        seen.says_once("renders a tiny image for the left eye");
         assert_own_eyes(&seen, &script(), 0.0, "a tiny view");
         assert_seen(&seen, &habits, "a tiny view");
         assert_depth(&seen, &habits, "a tiny view");
@@ -172,8 +168,7 @@ fn shrink_replaces_the_two_tiny_views_of_four() {
             let seen = watched(script, || {
                 let mut client = Client::new(gpu, habits.name, &[DEPTH, c"XR_VARJO_quad_views"]).unwrap();
                 client.views = ViewsOf::PRIMARY_STEREO_WITH_FOVEATED_INSET;
-                client.create_session().unwrap();
-                client.poll().unwrap();
+                client.start_session().unwrap();
                 let sizes = client.sizes().unwrap();
                 assert_eq!([sizes[0], sizes[2]], [[16; 2]; 2], "{what}");
                 assert!(sizes[1][0] > 128 && sizes[1][1] >= 128, "{what}: {sizes:?}");
@@ -193,12 +188,7 @@ fn shrink_replaces_the_two_tiny_views_of_four() {
                 client.destroy_session().unwrap();
             });
             assert_counts(&seen, &[[8, 0]], what);
-            assert_eq!(
-                seen.count_in_log("renders two tiny images for the left eye"),
-                1,
-                "{what}: {}",
-                seen.layer_log
-            );
+            seen.says_once("renders two tiny images for the left eye");
             let views = seen.views();
             assert_eq!(views.len(), 4, "{what}");
             for (i, view) in views.iter().enumerate() {
@@ -224,23 +214,20 @@ fn a_view_that_cannot_be_synthesized_is_shown_to_both_eyes() {
     ];
     with_gpu(|gpu| {
         for (reason, habits, left) in cases {
-            let seen = watched(script(), || {
-                let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
-                let chains = begin_session(&mut client, &habits).unwrap();
-                frame(&mut client, &chains, &habits).unwrap();
+            let seen = watched_session(gpu, script(), &habits, |client, chains| {
                 for _ in 0..3 {
-                    let (frame, submitted) = begin_rendered(&mut client, &chains, &habits).unwrap();
+                    let (frame, submitted) = begin_rendered(client, chains, &habits)?;
                     let depth = submitted.depth.map(|(part, planes)| {
                         let origin = [0, 1].map(|i| part.origin[i] - left[i]);
                         (Part { origin, ..part }, planes)
                     });
-                    client.show(frame, Submitted { depth, ..submitted }).unwrap();
+                    client.show(frame, Submitted { depth, ..submitted })?;
                 }
-                client.destroy_session().unwrap();
+                Ok(())
             });
             assert!(seen.violations().is_empty(), "{reason}: {:?}", seen.violations());
-            assert_eq!(seen.count_in_log("the same image for both eyes"), 1, "{reason}: {}", seen.layer_log);
-            assert_eq!(seen.count_in_log(reason), 1, "{reason}: {}", seen.layer_log);
+            seen.says_once("the same image for both eyes");
+            seen.says_once(reason);
             assert_eq!(seen.counts(), [[0, 3]], "{reason}: {}", seen.layer_log);
             let views = seen.views();
             assert_eq!(
@@ -260,24 +247,21 @@ fn a_view_that_cannot_be_synthesized_is_shown_to_both_eyes() {
 fn overlapping_frames_are_synthesized() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
-        let seen = watched(script(), || {
-            let pipelined = |client: &mut Client, chains: &Chains| {
-                let mut now = client.begin_frame()?;
-                for _ in 0..5 {
-                    let view = client.locate(now)?[0].unwrap();
-                    let submitted = render(client, chains, &habits, view)?;
-                    let next = client.wait_frame()?;
-                    client.show(now, submitted)?;
-                    client.begin_waited()?;
-                    now = next;
-                }
+        let seen = watched_session(gpu, script(), &habits, |client, chains| {
+            let mut now = client.begin_frame()?;
+            for _ in 0..5 {
                 let view = client.locate(now)?[0].unwrap();
-                client.end_frame(now, &[])?;
-                let early = render(client, chains, &habits, view)?;
-                let frame = client.begin_frame()?;
-                client.show(frame, early)
-            };
-            with_session(gpu, &habits, pipelined).unwrap();
+                let submitted = render(client, chains, &habits, view)?;
+                let next = client.wait_frame()?;
+                client.show(now, submitted)?;
+                client.begin_waited()?;
+                now = next;
+            }
+            let view = client.locate(now)?[0].unwrap();
+            client.end_frame(now, &[])?;
+            let early = render(client, chains, &habits, view)?;
+            let frame = client.begin_frame()?;
+            client.show(frame, early)
         });
         assert_sessions(&seen, &habits, &[[6, 0]], "overlapping frames");
     });
@@ -289,8 +273,8 @@ fn overlapping_frames_are_synthesized() {
 fn an_image_that_the_runtime_has_is_shown_to_both_eyes() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
-        let seen = watched(Script { acquires_ahead: true, ..script() }, || {
-            let work = |client: &mut Client, chains: &Chains| {
+        let seen =
+            watched_session(gpu, Script { acquires_ahead: true, ..script() }, &habits, |client, chains| {
                 let (begun, submitted) = begin_rendered(client, chains, &habits)?;
                 let ahead = client.acquire(&chains.color)?;
                 client.show(begun, submitted)?;
@@ -299,11 +283,9 @@ fn an_image_that_the_runtime_has_is_shown_to_both_eyes() {
                 client.copy_color(ahead, chains.part);
                 client.release(&chains.color)?;
                 frames(client, chains, &habits, 2)
-            };
-            with_session(gpu, &habits, work).unwrap();
-        });
+            });
         assert_counts(&seen, &[[2, 2]], "acquired ahead");
-        assert_eq!(seen.count_in_log("was not released since the last frame"), 1, "{}", seen.layer_log);
+        seen.says_once("was not released since the last frame");
         assert_seen(&seen, &habits, "afterwards");
     });
 }
@@ -314,8 +296,11 @@ fn an_image_that_is_shown_again_stays_stereo() {
     with_gpu(|gpu| {
         for name in ["left", "right"] {
             let habits = Habits { name, ..Habits::PLAIN };
-            let seen = watched(Script { acquires_ahead: true, ..script() }, || {
-                let work = |client: &mut Client, chains: &Chains| {
+            let seen = watched_session(
+                gpu,
+                Script { acquires_ahead: true, ..script() },
+                &habits,
+                |client, chains| {
                     for _ in 0..3 {
                         let (begun, submitted) = begin_rendered(client, chains, &habits)?;
                         client.show(begun, submitted)?;
@@ -335,9 +320,8 @@ fn an_image_that_is_shown_again_stays_stereo() {
                     let planes = Planes { near: 0.2, ..Planes::PLAIN };
                     let depth = submitted.depth.map(|(part, _)| (part, planes));
                     client.show(begun, Submitted { depth, ..submitted })
-                };
-                with_session(gpu, &habits, work).unwrap();
-            });
+                },
+            );
             assert_counts(&seen, &[[8, 1]], name);
             let frames: Vec<_> = seen.frames().into_iter().map(|layers| views_of(layers)).collect();
             for pair in frames[..8].chunks_exact(2) {
@@ -359,21 +343,17 @@ fn an_image_that_is_shown_again_stays_stereo() {
 fn the_layers_swapchains_follow_new_sizes_and_formats() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
-        let seen = watched(script(), || {
-            let work = |client: &mut Client, chains: &Chains| {
-                frames(client, chains, &habits, 2)?;
-                for (scale, format) in
-                    [(1.5, SRGB), (0.5, SRGB), (0.5, vk::Format::B8G8R8A8_UNORM), (1.0, SRGB)]
-                {
-                    let habits = Habits { scale, formats: [format, D32], ..habits };
-                    let chains = Chains::new(client, &habits)?;
-                    frames(client, &chains, &habits, 2)?;
-                    client.destroy_chain(chains.color)?;
-                    client.destroy_chain(chains.depth)?;
-                }
-                frames(client, chains, &habits, 2)
-            };
-            with_session(gpu, &habits, work).unwrap();
+        let seen = watched_session(gpu, script(), &habits, |client, chains| {
+            frames(client, chains, &habits, 2)?;
+            for (scale, format) in [(1.5, SRGB), (0.5, SRGB), (0.5, vk::Format::B8G8R8A8_UNORM), (1.0, SRGB)]
+            {
+                let habits = Habits { scale, formats: [format, D32], ..habits };
+                let chains = Chains::new(client, &habits)?;
+                frames(client, &chains, &habits, 2)?;
+                client.destroy_chain(chains.color)?;
+                client.destroy_chain(chains.depth)?;
+            }
+            frames(client, chains, &habits, 2)
         });
         assert_sessions(&seen, &habits, &[[12, 0]], "the first size again");
     });
@@ -428,28 +408,25 @@ fn a_frame_that_is_ended_again_is_still_stereo() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
         let refused = |result| Err(Failure { call: "xrEndFrame", result });
-        let seen = watched(script(), || {
-            let work = |client: &mut Client, chains: &Chains| {
-                // A count of layers without layers, in the first frame and in a later one.
-                for _ in 0..2 {
-                    let begun = client.begin_frame()?;
-                    let mistake = client.submit(begun, 2, std::ptr::null());
-                    assert_eq!(mistake, refused(sys::Result::ERROR_LAYER_INVALID));
-                    client.end_frame(begun, &[])?;
-                    frames(client, chains, &habits, 2)?;
-                }
-                // A layer of two views in a session of one.
-                let (begun, submitted) = begin_rendered(client, chains, &habits)?;
-                let mistake = client.end_frame(begun, &[Layer::Projection(vec![submitted; 2])]);
-                assert_eq!(mistake, refused(sys::Result::ERROR_VALIDATION_FAILURE));
-                client.show(begun, submitted)?;
-                // The runtime refuses it for another reason than its layers.
-                let (begun, submitted) = begin_rendered(client, chains, &habits)?;
-                let mistake = client.show(begun.at_another_time(), submitted);
-                assert_eq!(mistake, refused(sys::Result::ERROR_TIME_INVALID));
-                client.show(begun, submitted)
-            };
-            with_session(gpu, &habits, work).unwrap();
+        let seen = watched_session(gpu, script(), &habits, |client, chains| {
+            // A count of layers without layers, in the first frame and in a later one.
+            for _ in 0..2 {
+                let begun = client.begin_frame()?;
+                let mistake = client.submit(begun, 2, std::ptr::null());
+                assert_eq!(mistake, refused(sys::Result::ERROR_LAYER_INVALID));
+                client.end_frame(begun, &[])?;
+                frames(client, chains, &habits, 2)?;
+            }
+            // A layer of two views in a session of one.
+            let (begun, submitted) = begin_rendered(client, chains, &habits)?;
+            let mistake = client.end_frame(begun, &[Layer::Projection(vec![submitted; 2])]);
+            assert_eq!(mistake, refused(sys::Result::ERROR_VALIDATION_FAILURE));
+            client.show(begun, submitted)?;
+            // The runtime refuses it for another reason than its layers.
+            let (begun, submitted) = begin_rendered(client, chains, &habits)?;
+            let mistake = client.show(begun.at_another_time(), submitted);
+            assert_eq!(mistake, refused(sys::Result::ERROR_TIME_INVALID));
+            client.show(begun, submitted)
         });
         assert_eq!(seen.counts(), [[7, 0]], "{}", seen.layer_log);
         assert_seen(&seen, &habits, "ended again");
@@ -463,21 +440,18 @@ fn depth_that_fails_in_one_format_goes_on_in_another() {
         let habits = Habits::PLAIN;
         // The application creates two swapchains, then the layer creates one for colour and one for depth.
         let refused = faulty("xrCreateSwapchain", 4, sys::Result::ERROR_RUNTIME_FAILURE);
-        let seen = watched(refused, || {
-            let work = |client: &mut Client, chains: &Chains| {
-                frames(client, chains, &habits, 2)?;
-                let other = Habits { formats: [SRGB, vk::Format::D16_UNORM], ..habits };
-                let others = Chains::new(client, &other)?;
-                frames(client, &others, &other, 2)?;
-                frames(client, chains, &habits, 2)
-            };
-            with_session(gpu, &habits, work).unwrap();
+        let seen = watched_session(gpu, refused, &habits, |client, chains| {
+            frames(client, chains, &habits, 2)?;
+            let other = Habits { formats: [SRGB, vk::Format::D16_UNORM], ..habits };
+            let others = Chains::new(client, &other)?;
+            frames(client, &others, &other, 2)?;
+            frames(client, chains, &habits, 2)
         });
         assert_counts(&seen, &[[6, 0]], "two formats of depth");
         let frames = seen.frames();
         let with_depth = frames.iter().map(|layers| views_of(layers).iter().all(|view| view.depth.is_some()));
         assert_eq!(with_depth.collect::<Vec<_>>(), [false, false, true, true, false, false]);
-        assert_eq!(seen.count_in_log("does not go on to the runtime"), 1, "{}", seen.layer_log);
+        seen.says_once("does not go on to the runtime");
     });
 }
 
@@ -486,16 +460,13 @@ fn depth_that_fails_in_one_format_goes_on_in_another() {
 fn subsampled_images_are_shown_to_both_eyes() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
-        let seen = watched(script(), || {
-            let work = |client: &mut Client, chains: &Chains| {
-                let color = client.subsampled_chain(SRGB, chains.part.size)?;
-                let part = Part { chain: color.handle, ..chains.part };
-                let depth = client.chain(D32, part.size, 1)?;
-                frames(client, &Chains { color, depth, part }, &habits, 2)
-            };
-            with_session(gpu, &habits, work).unwrap();
+        let seen = watched_session(gpu, script(), &habits, |client, chains| {
+            let color = client.subsampled_chain(SRGB, chains.part.size)?;
+            let part = Part { chain: color.handle, ..chains.part };
+            let depth = client.chain(D32, part.size, 1)?;
+            frames(client, &Chains { color, depth, part }, &habits, 2)
         });
         assert_counts(&seen, &[[0, 2]], "subsampled");
-        assert_eq!(seen.count_in_log("subsampled"), 1, "{}", seen.layer_log);
+        seen.says_once("subsampled");
     });
 }

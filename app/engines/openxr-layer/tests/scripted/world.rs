@@ -225,6 +225,12 @@ impl Seen {
         ends.collect()
     }
 
+    /// Checks that a text is in the layer's log once.
+    #[track_caller]
+    pub fn says_once(&self, text: &str) {
+        assert_eq!(self.count_in_log(text), 1, "{text}: {}", self.layer_log);
+    }
+
     /// Returns how often a text is in the layer's log.
     pub fn count_in_log(&self, text: &str) -> usize {
         self.layer_log.matches(text).count()

@@ -60,7 +60,7 @@ impl BenchReport {
         }
         let is_known = |suite: &&SuiteData| EXPERIMENTS.iter().any(|known| known.name() == suite.name);
         for suite in self.suites.iter().filter(|suite| !is_known(suite)) {
-            sections.push(self.finished(tables::everything(&suite.name, "", suite), suite));
+            sections.push(self.finished(tables::everything([&suite.name, ""], suite), suite));
         }
         let mut pictures = Section::new("Pictures", QUALITY_METHOD);
         self.pictures.iter().for_each(|view| pictures.pictures(view.clone()));

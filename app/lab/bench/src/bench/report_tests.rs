@@ -17,13 +17,10 @@ fn header(renderer: &str) -> Header {
         quick: false,
         machine: Machine {
             cpu: "Example & Sons CPU".into(),
-            cores: 2,
-            os: "Linux".into(),
             gl_renderer: renderer.into(),
             gl_version: "OpenGL ES 3.2 Mesa".into(),
-            yoro: "0.1.0".into(),
-            date: "2026-01-01T12:00:00Z".into(),
             command: "yoro bench all --out 'a <b>.jsonl'".into(),
+            ..Machine::default()
         },
         pass_clock: PassClock::Finish,
         parameters: vec![

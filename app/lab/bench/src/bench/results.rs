@@ -106,14 +106,9 @@ impl SettingData {
         self.contenders.iter().find(|measured| measured.name == contender)
     }
 
-    /// Returns the measurements of two full renders.
-    pub fn conventional(&self) -> Option<&Measured> {
-        self.find(CONVENTIONAL)
-    }
-
     /// Returns the time of a stereo frame divided by that of two full renders.
     pub fn cost(&self, contender: &str) -> Option<Spread> {
-        self.find(contender)?.ratio(self.conventional()?, metric::FRAME_MS)
+        self.find(contender)?.ratio(self.find(CONVENTIONAL)?, metric::FRAME_MS)
     }
 
     /// Returns the name for tables: the scene, and the point of a sweep.

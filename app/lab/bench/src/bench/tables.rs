@@ -61,7 +61,7 @@ pub(super) const QUARTILES: &str = "Medians of all frames, and their quartiles."
 /// Returns a contender's frame time over that of two full renders, which have their own.
 pub(super) fn cost_of(setting: &SettingData, name: &str) -> Option<String> {
     if name == CONVENTIONAL {
-        return Some(format!("{} ms", milliseconds(setting.conventional()?.median(metric::FRAME_MS)?)));
+        return Some(format!("{} ms", milliseconds(setting.find(CONVENTIONAL)?.median(metric::FRAME_MS)?)));
     }
     let Spread { median, quartiles: [low, high] } = setting.cost(name)?;
     Some(format!("{median:.2} ({low:.2}–{high:.2})"))
@@ -283,7 +283,7 @@ pub(super) fn metric_table(suite: &SuiteData, title: &str, contenders: &[&str]) 
 }
 
 /// Returns a section with the mean of every metric in every setting, for suites that say nothing more.
-pub(super) fn everything(name: &str, about: &str, suite: &SuiteData) -> Section {
+pub(super) fn everything([name, about]: [&str; 2], suite: &SuiteData) -> Section {
     let mut letters = name.chars();
     let first = letters.next().into_iter().flat_map(char::to_uppercase);
     let heading: String = first.chain(letters.map(|c| if c == '-' { ' ' } else { c })).collect();

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use image::Rgb;
 use rayon::prelude::*;
 
-use super::patcher::{HOLE, InpaintError, PatchTime, Patched, Patcher, Reprojected, around};
+use super::patcher::{HOLE, PatchTime, Patched, Patcher, Reprojected, around};
 
 /// The radius in pixels within which known pixels are averaged.
 const RADIUS: i32 = 3;
@@ -45,7 +45,7 @@ impl March {
 }
 
 impl Patcher for March {
-    fn patch(&mut self, image: &Reprojected) -> Result<Patched, InpaintError> {
+    fn patch(&mut self, image: &Reprojected) -> anyhow::Result<Patched> {
         let start = Instant::now();
         let regions = regions(image);
         let colors: Vec<Vec<Rgb<u8>>> =

@@ -28,7 +28,7 @@ use std::rc::Rc;
 
 use yoro_gl::Context;
 
-pub use patcher::{HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID};
+pub use patcher::{HOLE, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID};
 
 /// The options of all patchers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -40,12 +40,12 @@ pub struct PatcherOptions {
 /// Creates a patcher: compiles its shaders or loads its model.
 ///
 /// # Errors
-/// [`InpaintError`] if the driver refuses a shader or the model is unsuitable.
+/// If the driver refuses a shader or the model is unsuitable.
 pub fn create(
     gl: &Rc<Context>,
     kind: PatcherKind,
     #[cfg_attr(not(feature = "neural"), expect(unused_variables))] options: &PatcherOptions,
-) -> Result<Box<dyn Patcher>, InpaintError> {
+) -> anyhow::Result<Box<dyn Patcher>> {
     Ok(match kind {
         PatcherKind::Paper | PatcherKind::Gather | PatcherKind::Median | PatcherKind::Xiao => {
             Box::new(screen::Screen::new(gl, kind)?)
@@ -55,6 +55,8 @@ pub fn create(
         #[cfg(feature = "neural")]
         PatcherKind::Neural => Box::new(neural::Neural::new(options.model.as_deref())?),
         #[cfg(not(feature = "neural"))]
-        PatcherKind::Neural => return Err(InpaintError::NotBuilt),
+        PatcherKind::Neural => anyhow::bail!(
+            "this build has no neural patcher: build it with --features neural, or choose another patcher"
+        ),
     })
 }

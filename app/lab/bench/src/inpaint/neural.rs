@@ -8,12 +8,13 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use anyhow::anyhow;
 use image::{Rgb, RgbImage};
 use rten::{Dimension, Model, ValueOrView};
 use rten_tensor::prelude::*;
 use rten_tensor::{NdTensor, Tensor};
 
-use super::patcher::{InpaintError, PatchTime, Patched, Patcher, Reprojected, nearest_rows};
+use super::patcher::{PatchTime, Patched, Patcher, Reprojected, nearest_rows};
 use yoro::eyes::Eye;
 use yoro_files as files;
 
@@ -34,9 +35,9 @@ pub(super) struct Neural {
 
 impl Neural {
     /// Loads the model from a file, or the built-in one.
-    pub(super) fn new(file: Option<&Path>) -> Result<Neural, InpaintError> {
+    pub(super) fn new(file: Option<&Path>) -> anyhow::Result<Neural> {
         let name = file.map_or("the built-in model".to_owned(), |file| file.display().to_string());
-        let fault = |reason: String| InpaintError::Model { model: name.clone(), reason };
+        let fault = |reason: String| unsuitable(&name, &reason);
         let loaded = match file {
             Some(file) => Model::load(files::read(file)?),
             None => Model::load_static_slice(MODEL),
@@ -71,8 +72,8 @@ impl Neural {
         Ok(neural)
     }
 
-    fn run(&self, input: NdTensor<f32, 4>) -> Result<Tensor<f32>, InpaintError> {
-        let fault = |reason: String| InpaintError::Model { model: self.name.clone(), reason };
+    fn run(&self, input: NdTensor<f32, 4>) -> anyhow::Result<Tensor<f32>> {
+        let fault = |reason: String| unsuitable(&self.name, &reason);
         let [_, _, height, width] = input.shape();
         let output = self
             .model
@@ -92,7 +93,7 @@ impl Neural {
 }
 
 impl Patcher for Neural {
-    fn patch(&mut self, image: &Reprojected) -> Result<Patched, InpaintError> {
+    fn patch(&mut self, image: &Reprojected) -> anyhow::Result<Patched> {
         let start = Instant::now();
         let [width, height] = image.size();
         let output = self.run(model_input(image))?;
@@ -107,6 +108,12 @@ impl Patcher for Neural {
         let time = PatchTime { patching: start.elapsed(), transfer: Duration::ZERO };
         Ok(Patched { image: patched, time })
     }
+}
+
+fn unsuitable(model: &str, reason: &str) -> anyhow::Error {
+    anyhow!(
+        "{model} is not a model for this patcher ({reason}): give an ONNX file made by app/lab/training/train.py"
+    )
 }
 
 /// Converts an image's column into a forward column, or back.

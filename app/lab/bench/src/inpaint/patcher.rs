@@ -1,13 +1,12 @@
-//! The trait of patchers, with its input, output and errors.
+//! The trait of patchers, with its input and output.
 
 use std::time::Duration;
 
+use anyhow::ensure;
 use image::{GrayImage, Luma, Rgb, RgbImage};
 
 use yoro::eyes::{DepthConvention, Eye, Warp};
 use yoro::synthesis::SourceMapEntry;
-use yoro_files::FileError;
-use yoro_gl::GlError;
 use yoro_media::{DepthImage, rgb_image};
 use yoro_render::stereo::SynthesizedImage;
 
@@ -15,49 +14,6 @@ use yoro_render::stereo::SynthesizedImage;
 pub const HOLE: u8 = 0;
 /// The mask's value everywhere else.
 pub const VALID: u8 = 255;
-
-/// The error when holes cannot be filled.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum InpaintError {
-    /// Colour, mask and disparity differ in size.
-    #[error(
-        "the reprojected image is {}x{} pixels, its mask {}x{} and its disparity {}x{}: give three of one size",
-        color[0], color[1], mask[0], mask[1], disparity[0], disparity[1]
-    )]
-    SizesDiffer {
-        /// Size of the colour image in pixels.
-        color: [u32; 2],
-        /// Size of the mask in pixels.
-        mask: [u32; 2],
-        /// Size of the disparity in pixels.
-        disparity: [u32; 2],
-    },
-    /// There is no valid pixel.
-    #[error(
-        "all pixels are holes, nothing is there to fill them from: check the depth, or leave the image out"
-    )]
-    NothingValid,
-    /// The file of the model could not be read.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The neural patcher cannot run the model.
-    #[error(
-        "{model} is not a model for this patcher ({reason}): give an ONNX file made by app/lab/training/train.py"
-    )]
-    Model {
-        /// The file, or "the built-in model".
-        model: String,
-        /// The reason.
-        reason: String,
-    },
-    /// This build does not contain the neural patcher.
-    #[error("this build has no neural patcher: build it with --features neural, or choose another patcher")]
-    NotBuilt,
-    /// GL refused.
-    #[error(transparent)]
-    Gl(#[from] GlError),
-}
 
 /// The kinds of patchers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -121,18 +77,19 @@ impl Reprojected {
     /// holes.
     ///
     /// # Errors
-    /// [`InpaintError::SizesDiffer`]; [`InpaintError::NothingValid`] if all pixels are holes.
+    /// If the sizes differ, or all pixels are holes.
     pub fn new(
         mut color: RgbImage,
         mut mask: GrayImage,
         mut disparity: DepthImage,
         eye: Eye,
-    ) -> Result<Reprojected, InpaintError> {
+    ) -> anyhow::Result<Reprojected> {
         let sizes = [color.dimensions(), mask.dimensions(), disparity.dimensions()];
-        if sizes.iter().any(|&size| size != sizes[0]) {
-            let [color, mask, disparity] = sizes.map(<[u32; 2]>::from);
-            return Err(InpaintError::SizesDiffer { color, mask, disparity });
-        }
+        let [of_color, of_mask, of_disparity] = sizes.map(|(width, height)| format!("{width}x{height}"));
+        ensure!(
+            sizes.iter().all(|&size| size == sizes[0]),
+            "the reprojected image is {of_color} pixels, its mask {of_mask} and its disparity {of_disparity}: give three of one size"
+        );
         let pixels = color.pixels_mut().zip(mask.pixels_mut()).zip(disparity.pixels_mut());
         for ((color, mask), disparity) in pixels {
             if mask.0[0] == HOLE {
@@ -141,9 +98,10 @@ impl Reprojected {
                 *mask = Luma([VALID]);
             }
         }
-        if mask.pixels().all(|m| m.0[0] == HOLE) {
-            return Err(InpaintError::NothingValid);
-        }
+        ensure!(
+            mask.pixels().any(|m| m.0[0] != HOLE),
+            "all pixels are holes, nothing is there to fill them from: check the depth, or leave the image out"
+        );
         Ok(Reprojected { color, mask, disparity, eye })
     }
 
@@ -151,8 +109,8 @@ impl Reprojected {
     /// Disparity is 0 at the far plane.
     ///
     /// # Errors
-    /// [`InpaintError::NothingValid`] if nothing of the source is visible.
-    pub fn from_synthesis(result: &SynthesizedImage, warp: &Warp) -> Result<Reprojected, InpaintError> {
+    /// If nothing of the source is visible.
+    pub fn from_synthesis(result: &SynthesizedImage, warp: &Warp) -> anyhow::Result<Reprojected> {
         let [width, height] = warp.target_size;
         let entry = |x: u32, y: u32| {
             let i = (height - 1 - y) as usize * width as usize + x as usize;
@@ -222,9 +180,8 @@ pub trait Patcher {
     /// Fills every hole; all other pixels stay as they are, bit for bit.
     ///
     /// # Errors
-    /// [`InpaintError::Gl`] for an image beyond the driver's limits; [`InpaintError::Model`] when a model cannot be
-    /// run.
-    fn patch(&mut self, image: &Reprojected) -> Result<Patched, InpaintError>;
+    /// For an image beyond the driver's limits, and when a model cannot be run.
+    fn patch(&mut self, image: &Reprojected) -> anyhow::Result<Patched>;
 }
 
 /// Returns for each row the nearest row that is `known`, which may be itself; the upper one if two are equally near.

@@ -7,7 +7,7 @@ use glam::IVec2;
 use image::{GrayImage, Rgb, RgbImage};
 
 use super::patcher::{
-    HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID, around, nearest_rows,
+    HOLE, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID, around, nearest_rows,
 };
 use yoro::eyes::Eye;
 use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
@@ -105,7 +105,7 @@ impl Screen {
 }
 
 impl Patcher for Screen {
-    fn patch(&mut self, image: &Reprojected) -> Result<Patched, InpaintError> {
+    fn patch(&mut self, image: &Reprojected) -> anyhow::Result<Patched> {
         let start = Instant::now();
         self.upload(image)?;
         self.gl.finish();

@@ -217,7 +217,7 @@ fn images_that_cannot_be_patched_are_refused() {
     let all_holes = GrayImage::new(4, 3);
     let depth = |w| DepthImage::new(w, 3);
     let error = Reprojected::new(color.clone(), all_holes.clone(), depth(4), Eye::Left).unwrap_err();
-    assert!(matches!(error, InpaintError::NothingValid), "{error}");
+    assert!(error.to_string().starts_with("all pixels are holes"), "{error}");
     let error = Reprojected::new(color, all_holes, depth(5), Eye::Left).unwrap_err();
     assert!(error.to_string().contains("4x3 pixels, its mask 4x3 and its disparity 5x3"), "{error}");
 }

@@ -18,8 +18,9 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::DataError;
 use crate::table::csv_mistake;
-use yoro_files::{self as files, FileError};
+use yoro_files as files;
 
 pub use sample::Sample;
 pub use writer::Writer;
@@ -32,32 +33,6 @@ pub const RUN_FILE: &str = "run.json";
 pub const LOG_FILE: &str = "log.txt";
 /// The file with the samples.
 pub const SAMPLES_FILE: &str = "samples.csv";
-
-/// The error of reading or writing a capture: one sentence.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum CaptureError {
-    /// A file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The folder or the folders hold no run, or one of another version of the format. Holds the sentence.
-    #[error("{0}")]
-    Unusable(String),
-    /// The folder already holds a run, or a file with the name of one of the capture's.
-    #[error("{} is there already, and the capture would replace it: name another folder", path.display())]
-    Occupied {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A file of the capture is damaged.
-    #[error("{} is damaged ({what}): leave the run out, or measure it again", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// The mistake in it.
-        what: String,
-    },
-}
 
 /// The device of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -212,7 +187,7 @@ pub struct Capture {
 }
 
 /// Reads the run in `folder`. Ignores a last row that is incomplete.
-pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
+pub fn read(folder: &Path) -> Result<Capture, DataError> {
     let info = read_info(folder)?;
     let path = folder.join(SAMPLES_FILE);
     let bytes = files::read(&path)?;
@@ -220,10 +195,7 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     let mut samples = Vec::new();
     if whole > 0 {
         let mut table = csv::Reader::from_reader(&bytes[..whole]);
-        let damaged = |(line, what): (u64, String)| CaptureError::Damaged {
-            path: path.clone(),
-            what: format!("line {line}: {what}"),
-        };
+        let damaged = |(line, what): (u64, String)| damaged(&path, &format!("line {line}: {what}"));
         let header = table.headers().map_err(|error| damaged(csv_mistake(&error)))?.clone();
         for row in table.records() {
             let row = row.map_err(|error| damaged(csv_mistake(&error)))?;
@@ -235,20 +207,19 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
 }
 
 /// Reads the description of the run in `folder`.
-pub fn read_info(folder: &Path) -> Result<RunInfo, CaptureError> {
+pub fn read_info(folder: &Path) -> Result<RunInfo, DataError> {
     let path = folder.join(RUN_FILE);
     if folder.is_dir() && !path.exists() {
-        return Err(CaptureError::Unusable(format!(
+        return Err(DataError::Unusable(format!(
             "{} is no capture (it has no {RUN_FILE}): name a folder that yoro device has written",
             folder.display()
         )));
     }
     let bytes = files::read(&path)?;
-    let damaged =
-        |error: serde_json::Error| CaptureError::Damaged { path: path.clone(), what: error.to_string() };
+    let damaged = |error: serde_json::Error| damaged(&path, &error.to_string());
     let value: serde_json::Value = serde_json::from_slice(&bytes).map_err(damaged)?;
     match value.get("version").and_then(serde_json::Value::as_u64) {
-        Some(version) if version != u64::from(VERSION) => Err(CaptureError::Unusable(format!(
+        Some(version) if version != u64::from(VERSION) => Err(DataError::Unusable(format!(
             "{} has version {version} of the capture format and this yoro reads version {VERSION}: use the yoro that wrote it",
             path.display()
         ))),
@@ -256,11 +227,18 @@ pub fn read_info(folder: &Path) -> Result<RunInfo, CaptureError> {
     }
 }
 
+fn damaged(path: &Path, what: &str) -> DataError {
+    DataError::Damaged(format!(
+        "{} is damaged ({what}): leave the run out, or measure it again",
+        path.display()
+    ))
+}
+
 /// Returns the folders of all runs in and below `folders`, sorted and without duplicates. Does not follow links.
 ///
 /// # Errors
-/// [`CaptureError`], also if a folder does not exist or no run was found.
-pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CaptureError> {
+/// [`DataError`], also if a folder does not exist or no run was found.
+pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, DataError> {
     let mut found = Vec::new();
     for folder in folders {
         for file in files::find(folder, &["json"])? {
@@ -275,7 +253,7 @@ pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CaptureError> {
         let names: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
         let what =
             format!("there is no capture in {}: name folders that yoro device has written", names.join(", "));
-        return Err(CaptureError::Unusable(what));
+        return Err(DataError::Unusable(what));
     }
     Ok(found)
 }

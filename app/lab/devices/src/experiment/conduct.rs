@@ -8,8 +8,9 @@ use std::time::Duration;
 use indicatif::ProgressBar;
 
 use super::{Experiment, WhenTooWarm, file_name, length};
+use crate::DataError;
 use crate::adb::{Device, DeviceError, now, sleep};
-use crate::capture::{self, CaptureError, Fault, FaultKind, Outcome, RUN_FILE, RunInfo, Writer};
+use crate::capture::{self, Fault, FaultKind, Outcome, RUN_FILE, RunInfo, Writer};
 use crate::held_settings::{HeldSettings, Wanted};
 use crate::phone::{self, Battery};
 use crate::run::{self, Found, LOST_TIMEOUT_S, Plan};
@@ -105,11 +106,7 @@ impl Conductor<'_> {
             set_aside(&folder)?;
             let [left, _] = self.experiment.length(progress.planned - i);
             let (run, of) = (i + 1, progress.planned);
-            self.bar.set_prefix(format!(
-                "{}: run {run} of {of}, {} left",
-                self.device.serial(),
-                length(left)
-            ));
+            self.bar.set_prefix(format!("{}: run {run} of {of}, {} left", self.device.serial, length(left)));
             self.bar.set_length(planned.plan.seconds() as u64);
             self.bar.set_position(0);
             let info = self.one(&planned.plan, &folder)?;
@@ -123,10 +120,7 @@ impl Conductor<'_> {
                     return Err(DeviceError::Interrupted);
                 }
                 Outcome::Interrupted { reason } => {
-                    return Err(DeviceError::Unreached {
-                        serial: self.device.serial().into(),
-                        words: reason,
-                    });
+                    return Err(DeviceError::Unreached { serial: self.device.serial.clone(), words: reason });
                 }
             }
         }
@@ -145,7 +139,7 @@ impl Conductor<'_> {
                     return Err(DeviceError::Unfit(format!(
                         "{} has {celsius:.1} C and does not cool down to {wanted:.1} C: let it rest in a cooler place, \
                          then give the same command",
-                        self.device.serial()
+                        self.device.serial
                     )));
                 }
             }
@@ -235,7 +229,7 @@ impl Conductor<'_> {
             self.bar.suspend(|| {
                 log::warn!(
                     "{}: the battery has {level:.0} %: {what}, and the plan goes on",
-                    self.device.serial()
+                    self.device.serial
                 )
             });
         }
@@ -267,7 +261,7 @@ fn is_complete(folder: &Path, plan: &Plan) -> Result<bool, DeviceError> {
     let info = match capture::read_info(folder) {
         Ok(info) => info,
         // The file was damaged while it was written. Treat the run as interrupted.
-        Err(CaptureError::Damaged { .. }) => return Ok(false),
+        Err(DataError::Damaged(_)) => return Ok(false),
         Err(error) => return Err(error.into()),
     };
     Ok(info.outcome == Outcome::Complete && info.method == plan.method && info.scene == plan.settings.scene)
@@ -281,6 +275,6 @@ fn set_aside(folder: &Path) -> Result<(), DeviceError> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let aside = |n: u32| folder.with_file_name(format!("{name}-cut-{n}"));
     let free = (1..).map(aside).find(|path| !path.exists()).unwrap_or_else(|| aside(0));
-    fs::rename(folder, &free).map_err(|source| FileError::Write { path: folder.into(), source })?;
-    Ok(())
+    let failed = |source| DataError::File(FileError::Write { path: folder.into(), source });
+    Ok(fs::rename(folder, &free).map_err(failed)?)
 }

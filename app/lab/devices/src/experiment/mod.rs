@@ -24,7 +24,7 @@ mod tests;
 
 use std::fs::{self, File};
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -32,6 +32,7 @@ use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
+use crate::DataError;
 use crate::latin_square::balanced_square;
 use crate::run::Plan;
 use crate::table::toml_mistake;
@@ -155,31 +156,6 @@ pub struct Experiment {
     pub method: Vec<MethodEntry>,
 }
 
-/// The error of planning or claiming an experiment.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ExperimentError {
-    /// The file cannot be read, or the folder cannot be written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The file is not a valid experiment.
-    #[error("{}: {what}", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// The mistake and the remedy.
-        what: String,
-    },
-    /// The folder belongs to another experiment.
-    #[error("{} holds runs of another experiment than {}: name another folder for the results", folder.display(), path.display())]
-    Other {
-        /// The folder.
-        folder: PathBuf,
-        /// The file.
-        path: PathBuf,
-    },
-}
-
 /// The exclusive right of one process to make runs in a folder.
 #[derive(Debug)]
 #[expect(dead_code, reason = "the file is locked while it is open")]
@@ -226,9 +202,9 @@ impl Experiment {
     }
 
     /// Reads and checks an experiment's file.
-    pub fn read(path: &Path) -> Result<Experiment, ExperimentError> {
+    pub fn read(path: &Path) -> Result<Experiment, DataError> {
         let text = String::from_utf8_lossy(&files::read(path)?).into_owned();
-        let format = |what: String| ExperimentError::Format { path: path.into(), what };
+        let format = |what: String| DataError::Unusable(format!("{}: {what}", path.display()));
         let experiment: Experiment =
             toml::from_str(&text).map_err(|error| format(toml_mistake(&text, &error)))?;
         experiment.check().map_err(format)?;
@@ -360,16 +336,20 @@ impl Experiment {
 
     /// Writes the experiment into its folder, or checks that the folder belongs to it. Other processes cannot claim the
     /// folder until the result is dropped.
-    pub fn claim(&self, folder: &Path, path: &Path) -> Result<Claim, ExperimentError> {
+    pub fn claim(&self, folder: &Path, path: &Path) -> Result<Claim, DataError> {
         let file = folder.join(FILE);
         let mut claimed = files::append(&file)?;
         if claimed.metadata().is_ok_and(|meta| meta.len() > 0) {
-            let same = Experiment::read(&file).is_ok_and(|before| before == *self);
-            let other = || ExperimentError::Other { folder: folder.into(), path: path.into() };
-            return if same { Ok(Claim(claimed)) } else { Err(other()) };
+            if Experiment::read(&file).is_ok_and(|before| before == *self) {
+                return Ok(Claim(claimed));
+            }
+            let (folder, path) = (folder.display(), path.display());
+            return Err(DataError::File(FileError::OtherRun(format!(
+                "{folder} holds runs of another experiment than {path}: name another folder for the results"
+            ))));
         }
         let text = toml::to_string(self)
-            .map_err(|error| ExperimentError::Format { path: path.into(), what: error.to_string() })?;
+            .map_err(|error| DataError::Unusable(format!("{}: {error}", path.display())))?;
         claimed.write_all(text.as_bytes()).map_err(|source| {
             let _ = fs::remove_file(&file);
             FileError::Write { path: file.clone(), source }

@@ -139,11 +139,7 @@ fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Optio
         .map(|block| block.iter().map(value).collect::<Option<Vec<f64>>>())
         .collect::<Option<_>>()?;
     let (mean, interval) = mean_of_blocks(&blocks)?;
-    let back = |value: f64| unscale(quantity, value);
+    // The mean that stands for ratios is that of their logarithms, so that half and double cancel out.
+    let back = |value: f64| if quantity.is_ratio() { 100.0 * value.exp_m1() } else { value };
     Some((back(mean), interval.map(|interval| interval.map(back))))
-}
-
-/// Returns a change by the mean that stands for it: for ratios of their logarithms, so that half and double cancel out.
-fn unscale(quantity: Quantity, value: f64) -> f64 {
-    if quantity.is_ratio() { 100.0 * value.exp_m1() } else { value }
 }

@@ -20,7 +20,7 @@ use serde::Serialize;
 use super::capture::Capture;
 use compare::{Difference, Mean};
 use run::{Integrated, Quantity, Run};
-use yoro_report::{CONFIDENCE, Report, ReportError, ReportFiles};
+use yoro_report::{CONFIDENCE, ReportError, ReportFiles};
 use yoro_scenes::BUILTINS;
 
 /// A device that was measured.
@@ -127,15 +127,6 @@ impl DeviceReport {
             });
         }
         report
-    }
-
-    fn report(&self) -> Report {
-        page::report(self)
-    }
-
-    /// Returns the answers for a terminal.
-    pub fn to_text(&self) -> String {
-        page::text(self)
     }
 
     /// Writes `report.html`, `report.md` and `report.json` into `folder`.

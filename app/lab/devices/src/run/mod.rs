@@ -92,14 +92,14 @@ pub(crate) struct Found {
 /// [`DeviceError`], also if the application is not installed, the battery saver is on, or the screen has a lock that
 /// only its owner can open.
 pub(crate) fn look(device: &Device) -> Result<Found, DeviceError> {
-    let application = phone::version(device)?
-        .ok_or_else(|| DeviceError::NotInstalled { serial: device.serial().to_owned() })?;
+    let application =
+        phone::version(device)?.ok_or_else(|| DeviceError::NotInstalled { serial: device.serial.clone() })?;
     if phone::saves_battery(device)? {
         return Err(DeviceError::Unfit(format!(
             "the battery saver of {} is on, which slows it down: turn it off (adb -s {} shell settings put global \
              low_power 0)",
-            device.serial(),
-            quoted(device.serial())
+            device.serial,
+            quoted(&device.serial)
         )));
     }
     let keyguard = phone::keyguard(device)?;
@@ -114,7 +114,7 @@ pub(crate) fn locked(device: &Device) -> DeviceError {
     DeviceError::Unfit(format!(
         "{} is locked by PIN, pattern or password, which ends a measurement as soon as its screen goes off: set its \
          screen lock to none or swipe for the time of the measurement",
-        device.serial()
+        device.serial
     ))
 }
 
@@ -124,7 +124,7 @@ pub(crate) fn locked(device: &Device) -> DeviceError {
 /// [`DeviceError`], which names the remedy.
 pub(crate) fn refuse_charger(device: &Device) -> Result<(), DeviceError> {
     let battery = phone::battery(device)?;
-    let serial = device.serial().to_owned();
+    let serial = device.serial.clone();
     if battery.held {
         return Err(DeviceError::Unfit(format!(
             "what {serial} says of its battery was set by hand (dumpsys battery set or unplug): adb -s {} shell \

@@ -71,7 +71,7 @@ pub(crate) fn capture(
         has_ended: false,
         refresh_is_told: false,
     };
-    for refused in held.refused() {
+    for refused in &held.refused {
         session.own_faults.push(Fault { kind: FaultKind::NotPinned, at_s: None, detail: refused.clone() });
     }
     session.renew_faults()?;
@@ -169,7 +169,7 @@ impl Session<'_> {
                 }
                 Event::Lost => {
                     self.bar.set_message("lost: connect it again");
-                    self.bar.suspend(|| log::warn!("{} is lost; waiting for it", self.device.serial()));
+                    self.bar.suspend(|| log::warn!("{} is lost; waiting for it", self.device.serial));
                 }
                 Event::Back { seconds, rebooted } => self.back(seconds, rebooted)?,
                 Event::Quiet => {
@@ -201,7 +201,7 @@ impl Session<'_> {
                 None
             }
             LineContent::Damaged(why) => {
-                self.bar.suspend(|| log::warn!("{}: a line is left out: {why}", self.device.serial()));
+                self.bar.suspend(|| log::warn!("{}: a line is left out: {why}", self.device.serial));
                 None
             }
             LineContent::Other => None,
@@ -274,7 +274,7 @@ impl Session<'_> {
     fn quiet(&mut self) -> Result<Option<Outcome>, DeviceError> {
         if let Some(seconds) = self.follower.lost_for() {
             let reason =
-                format!("{} was lost and did not come back within {seconds:.0} s", self.device.serial());
+                format!("{} was lost and did not come back within {seconds:.0} s", self.device.serial);
             return Ok((seconds > LOST_TIMEOUT_S).then_some(Outcome::Interrupted { reason }));
         }
         let silent_s = now() - self.silent_since_s;
@@ -332,7 +332,7 @@ impl Session<'_> {
 
     /// Returns the number of faults in the capture that come from the log.
     fn reading_faults(&self) -> usize {
-        self.writer.info().faults.len() - self.own_faults.len()
+        self.writer.info.faults.len() - self.own_faults.len()
     }
 
     fn renew_faults(&mut self) -> Result<(), DeviceError> {

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::StudyError;
 use super::ratings::Ratings;
-use yoro_files::interrupt;
+use crate::DataError;
+use yoro_files::{FileError, interrupt};
 use yoro_report::stats::{median, unique};
 use yoro_report::{Interval, Sample};
 
@@ -72,15 +72,15 @@ impl Study {
     /// Analyses ratings on a scale from its lowest to its highest rating.
     ///
     /// # Errors
-    /// [`StudyError::Table`] if the baseline or any other method is missing; [`StudyError::Interrupted`].
+    /// [`DataError::Unusable`] if the baseline or any other method is missing; [`FileError::Interrupted`].
     pub fn new(
         ratings: &Ratings,
         baseline: &str,
         scale: [f64; 2],
         made_by: String,
-    ) -> Result<Study, StudyError> {
+    ) -> Result<Study, DataError> {
         let methods: BTreeSet<&str> = ratings.rows.iter().map(|row| row.method.as_str()).collect();
-        let nothing = |what: String| StudyError::Table { path: ratings.path.clone(), line: None, what };
+        let nothing = |what: String| DataError::Unusable(format!("{}: {what}", ratings.path.display()));
         let named = || methods.iter().copied().collect::<Vec<_>>().join(", ");
         if !methods.contains(baseline) {
             let what = format!("nobody has rated {baseline}: name one of {} as the baseline", named());
@@ -99,7 +99,7 @@ impl Study {
         };
         for question in unique(ratings.rows.iter().map(|row| row.question.as_str())) {
             for method in methods.iter().filter(|method| **method != baseline) {
-                interrupt::check()?;
+                interrupt::check().map_err(FileError::from)?;
                 match compare(ratings, question, method, baseline) {
                     Some(found) => study.questions.push(found),
                     None => study.unanswered.push((question.into(), (*method).into())),

@@ -1,44 +1,58 @@
 //! What the report of a study consists of.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use super::analysis::{Opinion, Question, Study};
 use yoro_report::paper::{PAPER, STUDY_PARTICIPANTS};
-use yoro_report::{Axis, CONFIDENCE, Cell, Entry, Interval, Plot, Report, Section, Table, Text};
+use yoro_report::{
+    Axis, CONFIDENCE, Cell, Entry, Interval, Plot, Report, ReportError, ReportFiles, Section, Table, Text,
+};
 
-pub(super) fn report(study: &Study) -> Report {
-    let mut ratings = Section::new("Ratings", "");
-    plots(study).into_iter().for_each(|plot| ratings.plot(plot));
-    ratings.table(table(study));
-    ratings.table(left_out(study));
-    let mut method = Section::new(
-        "How to read this",
-        "A participant gives one value for each method: the mean over the scenes. Differences are taken participant by participant; \
+impl Study {
+    pub(super) fn report(&self) -> Report {
+        let mut ratings = Section::new("Ratings", "");
+        plots(self).into_iter().for_each(|plot| ratings.plot(plot));
+        ratings.table(table(self));
+        ratings.table(left_out(self));
+        let mut method = Section::new(
+            "How to read this",
+            "A participant gives one value for each method: the mean over the scenes. Differences are taken participant by participant; \
          whoever lacks a rating is left out of that comparison only, by name. Intervals are Student's t of the participants' means. \
          They are not corrected for the number of questions, and one around zero is no proof of equality.",
-    );
-    method.text(Text::quiet(format!("`{}`", study.made_by)));
-    let mut summary = vec![Text::quiet(format!("Participants: {}.", study.participants))];
-    summary.extend(study.questions.iter().map(|question| {
-        let (name, words) = (heading(question), in_words(question));
-        Text::from(format!("**{name}**: {words}."))
-    }));
-    summary.extend(unanswered(study).into_iter().map(Text::warning));
-    Report { title: "User study".into(), summary, sections: vec![ratings, method] }
-}
+        );
+        method.text(Text::quiet(format!("`{}`", self.made_by)));
+        let mut summary = vec![Text::quiet(format!("Participants: {}.", self.participants))];
+        summary.extend(self.questions.iter().map(|question| {
+            let (name, words) = (heading(question), in_words(question));
+            Text::from(format!("**{name}**: {words}."))
+        }));
+        summary.extend(unanswered(self).into_iter().map(Text::warning));
+        Report { title: "User study".into(), summary, sections: vec![ratings, method] }
+    }
 
-pub(super) fn text(study: &Study) -> String {
-    let mut out = String::new();
-    for question in &study.questions {
-        let _ = writeln!(out, "{}: {}", heading(question), in_words(question));
-        for excluded in &question.excluded {
-            let _ = writeln!(out, "  left out: {} {}", excluded.participant, excluded.reason);
+    /// Returns the means and differences for a terminal.
+    pub fn to_text(&self) -> String {
+        let mut out = String::new();
+        for question in &self.questions {
+            let _ = writeln!(out, "{}: {}", heading(question), in_words(question));
+            for excluded in &question.excluded {
+                let _ = writeln!(out, "  left out: {} {}", excluded.participant, excluded.reason);
+            }
         }
+        for line in unanswered(self) {
+            let _ = writeln!(out, "{line}");
+        }
+        out
     }
-    for line in unanswered(study) {
-        let _ = writeln!(out, "{line}");
+
+    /// Writes `study.html`, `study.md` and `study.json` into `folder`.
+    ///
+    /// # Errors
+    /// [`ReportError`]. All three are made before the first one is written.
+    pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
+        self.report().write(folder, "study", Some(&serde_json::to_string_pretty(self)?))
     }
-    out
 }
 
 fn heading(question: &Question) -> String {

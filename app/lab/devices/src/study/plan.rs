@@ -8,7 +8,7 @@ use rand::seq::SliceRandom as _;
 use rand_pcg::Pcg32;
 use serde::Serialize;
 
-use super::StudyError;
+use crate::DataError;
 use crate::latin_square::balanced_square;
 use crate::table::csv_text;
 use yoro_files as files;
@@ -124,13 +124,12 @@ pub type Trials = BTreeMap<(String, u32), (String, String)>;
 /// Reads the trials of a plan from its CSV table.
 ///
 /// # Errors
-/// [`StudyError`], also if a column is missing or a row is damaged.
-pub fn read_trials(path: &Path) -> Result<Trials, StudyError> {
+/// [`DataError`], also if a column is missing or a row is damaged.
+pub fn read_trials(path: &Path) -> Result<Trials, DataError> {
     let bytes = files::read(path)?;
-    let damaged = |line: u64| StudyError::Table {
-        path: path.into(),
-        line: Some(line),
-        what: "this is not a row of a plan: draw the plan again".into(),
+    let damaged = |line: u64| {
+        let path = path.display();
+        DataError::Unusable(format!("{path}, line {line}: this is not a row of a plan: draw the plan again"))
     };
     let mut table = csv::Reader::from_reader(&bytes[..]);
     let header = table.headers().map_err(|_| damaged(1))?.clone();

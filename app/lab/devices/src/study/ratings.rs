@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::StudyError;
 use super::plan::Trials;
+use crate::DataError;
 use crate::log::{self, Kind};
 use crate::table::{csv_mistake, csv_text};
 use yoro_files as files;
@@ -35,14 +35,15 @@ impl Ratings {
     /// Reads a CSV table with a header. The order of the columns does not matter.
     ///
     /// # Errors
-    /// [`StudyError`], also if a rating is not a number, lies outside `scale`, or occurs twice.
-    pub fn read(path: &Path, scale: [f64; 2]) -> Result<Ratings, StudyError> {
+    /// [`DataError`], also if a rating is not a number, lies outside `scale`, or occurs twice.
+    pub fn read(path: &Path, scale: [f64; 2]) -> Result<Ratings, DataError> {
         let bytes = files::read(path)?;
         // Excel starts files with a byte order mark.
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
         let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
+        let shown = path.display();
         let row_error =
-            |line: u64, what: String| StudyError::Table { path: path.into(), line: Some(line), what };
+            |line: u64, what: String| DataError::Unusable(format!("{shown}, line {line}: {what}"));
         let csv_error = |error: csv::Error| {
             let (line, what) = csv_mistake(&error);
             row_error(line, format!("{what}: correct the row"))
@@ -51,8 +52,8 @@ impl Ratings {
         let mut at = [0; COLUMNS.len()];
         for (place, column) in at.iter_mut().zip(COLUMNS) {
             *place = header.iter().position(|name| name.eq_ignore_ascii_case(column)).ok_or_else(|| {
-                let what = format!("there is no column \"{column}\": it needs {}", COLUMNS.join(", "));
-                StudyError::Table { path: path.into(), line: None, what }
+                let columns = COLUMNS.join(", ");
+                DataError::Unusable(format!("{shown}: there is no column \"{column}\": it needs {columns}"))
             })?;
         }
         let mut rows = Vec::new();
@@ -86,8 +87,7 @@ impl Ratings {
             rows.push(Row { participant, method, scene, question, rating });
         }
         if rows.is_empty() {
-            let what = "there is no rating in it: add rows".into();
-            return Err(StudyError::Table { path: path.into(), line: None, what });
+            return Err(DataError::Unusable(format!("{shown}: there is no rating in it: add rows")));
         }
         Ok(Ratings { path: path.into(), rows })
     }

@@ -49,7 +49,7 @@ impl Subcommand for ExperimentArgs {
             let (folder, reason) = &progress.failed[0];
             bail!(
                 "{}: {progress}, the first because {reason} ({}); the same command tries again",
-                device.serial(),
+                device.serial,
                 folder.display()
             )
         })?;

@@ -79,7 +79,7 @@ impl Subcommand for RunArgs {
         let devices = self.which.choose()?;
         let is_only = devices.len() == 1;
         each(devices, |device, bar| {
-            let folder = folder_of(&self.out, device.serial(), is_only);
+            let folder = folder_of(&self.out, &device.serial, is_only);
             bar.set_length(plan.seconds() as u64);
             one(device, &plan, &wanted, &folder, bar)
         })

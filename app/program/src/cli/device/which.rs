@@ -62,7 +62,7 @@ where
     let mut failures = Vec::new();
     thread::scope(|scope| {
         let begin = |device: Device| {
-            let serial = device.serial().to_owned();
+            let serial = device.serial.clone();
             let bar = bars.add(ProgressBar::new(0).with_style(style.clone()).with_prefix(serial.clone()));
             let work = &work;
             let thread = scope.spawn(move || {

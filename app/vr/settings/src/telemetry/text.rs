@@ -10,7 +10,6 @@ pub(super) const MISSING: &str = "na";
 
 /// An error in the text of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
 pub enum LineError {
     /// The line does not start with `v=1`.
     #[error(

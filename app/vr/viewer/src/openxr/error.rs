@@ -8,7 +8,6 @@ use yoro_gl::GlError;
 
 /// A reason why a headset cannot be used, or can no longer be used. Each is one sentence with the remedy.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum XrError {
     /// No runtime was found.
     #[error(transparent)]

@@ -47,6 +47,13 @@ impl Run {
         Run { viewer, window: window(gl), now_ns: 0 }
     }
 
+    /// Returns a run whose scene is loaded.
+    fn ready(gl: &Rc<Context>, pairs: &[&str]) -> Run {
+        let mut run = Run::new(gl, pairs);
+        run.load();
+        run
+    }
+
     fn frame(&mut self) -> PresentReport {
         self.now_ns += PERIOD_NS;
         let timing = FrameTiming {
@@ -58,14 +65,25 @@ impl Run {
     }
 
     fn load(&mut self) {
-        while self.viewer.viewer().scene_state() == SceneState::Loading {
-            self.viewer.viewer_mut().poll_scene();
-            std::thread::sleep(Duration::from_millis(2));
-        }
+        wait(&mut self.viewer);
     }
 
     fn image(&self) -> Vec<u8> {
         self.window.read_rgba8(0, [0, 0], WINDOW)
+    }
+
+    /// Returns the image of the next frame.
+    fn next_image(&mut self) -> Vec<u8> {
+        self.frame();
+        self.image()
+    }
+}
+
+/// Waits until the scene is loaded, or cannot be.
+fn wait(viewer: &mut Cardboard) {
+    while viewer.viewer().is_loading() {
+        viewer.viewer_mut().poll_scene();
+        std::thread::sleep(Duration::from_millis(2));
     }
 }
 
@@ -109,8 +127,7 @@ fn a_session_runs_from_loading_to_its_summary() {
     run.viewer.attach(gl.clone()).unwrap();
     run.load();
     run.viewer.event(Event::ToggleHud).unwrap();
-    run.frame();
-    let differing = run.image().iter().zip(&before).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    let differing = run.next_image().iter().zip(&before).filter(|(a, b)| a.abs_diff(**b) > 2).count();
     assert!(differing > 0 && differing < before.len() / 8, "only the HUD is gone: {differing}");
     drop(run);
     assert_eq!((gl.object_count(), gl.take_errors()), (0, None));
@@ -120,10 +137,8 @@ fn a_session_runs_from_loading_to_its_summary() {
 fn events_change_method_ipd_hud_and_viewpoint() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let mut run = Run::new(gl, &["hud=false", "method=yoro", "ipd=0.063"]);
-    run.load();
-    run.frame();
-    let yoro = run.image();
+    let mut run = Run::ready(gl, &["hud=false", "method=yoro", "ipd=0.063"]);
+    let yoro = run.next_image();
     assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Conventional.into()));
     assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Mono.into()));
     // The renderer keeps what the methods have asked it for.
@@ -143,8 +158,7 @@ fn events_change_method_ipd_hud_and_viewpoint() {
         run.viewer.event(Event::IpdUp).unwrap();
     }
     assert_eq!(run.viewer.viewer().ipd(), Ipd::MAX);
-    run.frame();
-    assert_ne!(run.image(), yoro);
+    assert_ne!(run.next_image(), yoro);
     assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Menu(true));
     assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Recenter);
     assert_eq!(run.viewer.event(Event::ToggleHud).unwrap(), Action::Hud(true));
@@ -160,8 +174,7 @@ fn events_change_method_ipd_hud_and_viewpoint() {
 fn auto_measures_both_methods_while_nothing_is_allocated_and_says_which_and_why() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let mut run = Run::new(gl, &["method=auto", "adaptive=true"]);
-    run.load();
+    let mut run = Run::ready(gl, &["method=auto", "adaptive=true"]);
     run.frame();
     let held = |gl: &Context| (gl.object_count(), gl.texture_bytes());
     let both = held(gl);
@@ -248,29 +261,24 @@ fn choices_on_this_machine() {
 #[test]
 fn sensors_turn_the_picture() {
     let headless = Headless::open(Backend::Egl).unwrap();
-    let mut run = Run::new(headless.gl(), &["hud=false"]);
-    run.load();
-    run.frame();
-    let ahead = run.image();
+    let mut run = Run::ready(headless.gl(), &["hud=false"]);
+    let ahead = run.next_image();
     run.viewer.sensor(MotionSample::Accelerometer(Vec3::new(9.81, 0.0, 0.0)), 1);
-    run.frame();
-    assert_eq!(run.image(), ahead, "upright is straight ahead");
+    assert_eq!(run.next_image(), ahead, "upright is straight ahead");
     for i in 1..=50 {
         run.viewer.sensor(MotionSample::Gyroscope(Vec3::X), i * 10_000_000);
     }
     run.viewer.pause();
     run.viewer.resume();
     run.now_ns = 500_000_000;
-    run.frame();
-    let turned = run.image();
+    let turned = run.next_image();
     assert_ne!(turned, ahead);
     let angle = run.viewer.tracker().head_from_world(0.0).inverse().to_scaled_axis().y;
     run.viewer.hold_head(Some(HeldHead {
         rendered: Quat::from_rotation_y(angle),
         displayed: Quat::from_rotation_y(angle),
     }));
-    run.frame();
-    let differing = run.image().iter().zip(&turned).filter(|(a, b)| a.abs_diff(**b) > 3).count();
+    let differing = run.next_image().iter().zip(&turned).filter(|(a, b)| a.abs_diff(**b) > 3).count();
     assert!(differing < turned.len() / 100, "the picture is that of the head's angle: {differing}");
 }
 
@@ -298,8 +306,7 @@ fn questions_are_asked_after_the_session_and_answered_by_head_or_keys() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let settings = ["duration=0.1", "hud=false", "participant=P03", "trial=4"];
     let questions = ["questions=image-quality,comfort", "method=mono"];
-    let mut run = Run::new(headless.gl(), &[&settings[..], &questions].concat());
-    run.load();
+    let mut run = Run::ready(headless.gl(), &[&settings[..], &questions].concat());
     let seen = run.frame();
     assert!(!seen.session_over);
     let scene = run.image();
@@ -345,14 +352,6 @@ fn ready(headless: &Headless) -> Cardboard {
     viewer.attach(headless.gl().clone()).unwrap();
     wait(&mut viewer);
     viewer
-}
-
-fn wait(viewer: &mut Cardboard) {
-    while viewer.viewer().scene.is_loading() {
-        std::thread::sleep(std::time::Duration::from_millis(5));
-        viewer.viewer_mut().poll_scene();
-    }
-    assert_eq!(viewer.viewer().scene_state(), SceneState::Ready);
 }
 
 fn with(viewer: &Cardboard, pairs: &[&str]) -> Settings {
@@ -414,8 +413,7 @@ fn mistakes_change_nothing() {
 fn the_menu_is_chosen_from_by_looking_and_keeps_what_it_changes() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let mut run = Run::new(gl, &["hud=false"]);
-    run.load();
+    let mut run = Run::ready(gl, &["hud=false"]);
     let look = |run: &mut Run, yaw: f32, pitch: f32, frames: u32| {
         let turn = Quat::from_rotation_y(yaw.to_radians()) * Quat::from_rotation_x(pitch.to_radians());
         run.viewer.hold_head(Some(HeldHead { rendered: turn, displayed: turn }));
@@ -446,11 +444,9 @@ fn the_menu_is_chosen_from_by_looking_and_keeps_what_it_changes() {
     let compared = look(&mut run, 5.0, -7.5, 1);
     assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Nothing);
     run.viewer.event(Event::Release).unwrap();
-    run.frame();
-    let after = run.image();
+    let after = run.next_image();
     assert!(compared != menu && after != compared);
-    let mut plain = Run::new(gl, &["hud=false", "method=conventional", "dominant=left", "viewer=v2"]);
-    plain.load();
+    let mut plain = Run::ready(gl, &["hud=false", "method=conventional", "dominant=left", "viewer=v2"]);
     let expected = look(&mut plain, 5.0, -7.5, 1);
     let apart = compared.iter().zip(&expected).filter(|(a, b)| a.abs_diff(**b) > 2).count();
     assert!(apart < expected.len() / 50, "two real renders besides the message: {apart}");
@@ -470,8 +466,7 @@ fn the_menu_is_chosen_from_by_looking_and_keeps_what_it_changes() {
 #[test]
 fn no_quality_of_the_menu_contradicts_positional_timewarp() {
     let headless = Headless::open(Backend::Egl).unwrap();
-    let mut run = Run::new(headless.gl(), &["hud=false", "timewarp=position"]);
-    run.load();
+    let mut run = Run::ready(headless.gl(), &["hud=false", "timewarp=position"]);
     run.frame();
     run.viewer.event(Event::LongPress).unwrap();
     let turn = Quat::from_rotation_y(-15f32.to_radians()) * Quat::from_rotation_x(-3.5f32.to_radians());
@@ -489,15 +484,12 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
     const URI: &str = "https://google.com/cardboard/cfg?p=CgRBY21lEghQb2NrZXQgNR3sUTg9JY_CdT0qEAAANEIAADRCAAA0QgAANEI1KVwPPToImpmZPs3MzD4";
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
-    let mut run = Run::new(gl, &["hud=false"]);
-    run.load();
+    let mut run = Run::ready(gl, &["hud=false"]);
     let [corner, scene] = [[10.0, 5.0], [160.0, 90.0]];
     assert_eq!(run.viewer.touch(Some(corner)).unwrap(), None, "a computer has started it: a tap is a tap");
-    run.frame();
-    let bare = run.image();
+    let bare = run.next_image();
     run.viewer.viewer_mut().offer_start_screen();
-    run.frame();
-    let signs = run.image();
+    let signs = run.next_image();
     let differing: Vec<usize> =
         (0..bare.len() / 4).filter(|i| bare[4 * i..][..4] != signs[4 * i..][..4]).collect();
     // 48 density-independent pixels at 74 pixels per inch.
@@ -511,8 +503,7 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
 
     // The centres of the tiles, by column and row.
     let tile = |column: usize, row: usize| Some([40.0 + 80.0 * column as f32, 115.0 + 34.0 * row as f32]);
-    run.frame();
-    let shown = run.image();
+    let shown = run.next_image();
     assert_eq!(run.viewer.touch(tile(1, 0)).unwrap(), Some(Action::Settings));
     assert_eq!(run.viewer.viewer().settings().viewer, "v2");
     assert_eq!(run.viewer.touch(tile(2, 0)).unwrap(), Some(Action::Nothing), "there is no third viewer");
@@ -521,17 +512,14 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
     assert_eq!(run.viewer.touch(tile(0, 0)).unwrap(), Some(Action::Settings));
     assert_eq!(run.viewer.touch(tile(2, 0)).unwrap(), Some(Action::Settings), "the one before is offered");
     assert_eq!(run.viewer.viewer().settings().viewer, URI);
-    run.frame();
-    let chosen = run.image();
+    let chosen = run.next_image();
     assert_eq!(run.viewer.touch(tile(0, 1)).unwrap(), Some(Action::Scan(true)));
-    run.frame();
-    let other = run.image();
+    let other = run.next_image();
     assert!(shown != chosen && other != chosen, "it says how to get another viewer");
     let picture: Vec<u8> = (0..Board::PICTURE[0] * Board::PICTURE[1]).map(|i| (i % 251) as u8).collect();
     run.viewer.viewer_mut().show_camera(&picture);
     assert!(run.viewer.viewer().is_scanning());
-    run.frame();
-    assert!(run.image() != other, "what the camera sees");
+    assert!(run.next_image() != other, "what the camera sees");
     assert_eq!(run.viewer.touch(tile(0, 1)).unwrap(), Some(Action::Scan(false)));
     assert!(!run.viewer.viewer().is_scanning());
     assert_eq!(run.viewer.touch(Some([110.0, 149.0])).unwrap(), Some(Action::ShareLog));
@@ -576,8 +564,7 @@ fn what_moves_plays_and_rests_in_the_background() {
     std::fs::write(folder.path().join("camera.json"), r#"[{"position": [0, 0, 1], "target": [0, 0, -2]}]"#)
         .unwrap();
     let scene = format!("scene={}", path.display());
-    let mut run = Run::new(headless.gl(), &[&scene, "hud=false"]);
-    run.load();
+    let mut run = Run::ready(headless.gl(), &[&scene, "hud=false"]);
     let mut after = |frames: u32| {
         for _ in 0..frames {
             run.frame();
@@ -591,9 +578,6 @@ fn what_moves_plays_and_rests_in_the_background() {
     let half = after(30);
     run.viewer.viewer_mut().pause();
     run.now_ns += 10_200_000_000;
-    let resumed = {
-        run.frame();
-        run.image()
-    };
+    let resumed = run.next_image();
     assert!(half == resumed && half != start);
 }

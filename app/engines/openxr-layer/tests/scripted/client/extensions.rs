@@ -134,13 +134,16 @@ impl Client<'_> {
             additional_usage_flags: 0,
         };
         let info = self.chain_info(format, size, 1);
-        self.chain_of(&sys::SwapchainCreateInfo { next: (&raw const more).cast(), ..info })
+        self.chain_of(&self.xr, &sys::SwapchainCreateInfo { next: (&raw const more).cast(), ..info })
     }
 
     /// Creates a swapchain whose image never changes.
     pub fn static_chain(&self, format: vk::Format, size: [u32; 2]) -> Outcome<Chain> {
         let create_flags = sys::SwapchainCreateFlags::STATIC_IMAGE;
-        self.chain_of(&sys::SwapchainCreateInfo { create_flags, ..self.chain_info(format, size, 1) })
+        self.chain_of(
+            &self.xr,
+            &sys::SwapchainCreateInfo { create_flags, ..self.chain_info(format, size, 1) },
+        )
     }
 }
 

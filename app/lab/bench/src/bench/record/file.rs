@@ -4,35 +4,10 @@ use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use anyhow::{anyhow, bail};
+
 use super::{Conditions, Header, Measurement, Record, RoundEnd, SceneFacts, Unsupported, VERSION};
 use yoro_files::{self as files, FileError};
-
-/// The error when a file of results cannot be used.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RecordError {
-    /// The file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The file is not a result, is from another version, or is damaged before its last line. Holds the sentence.
-    #[error("{0}")]
-    Unusable(String),
-    /// The file belongs to a run with other parameters.
-    #[error(
-        "{} holds results with {name} = {there}, and this run has {here}: give the same options to go on with it, or name another file",
-        path.display()
-    )]
-    Parameters {
-        /// The file.
-        path: PathBuf,
-        /// The parameter that differs.
-        name: String,
-        /// The value in the file.
-        there: String,
-        /// The value in this run.
-        here: String,
-    },
-}
 
 /// A file of results.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,8 +27,8 @@ impl Results {
     /// with a warning.
     ///
     /// # Errors
-    /// [`RecordError`] for a file that cannot be read, is not a result file, or is damaged before its last line.
-    pub fn read(path: &Path) -> Result<Results, RecordError> {
+    /// [`FileError`], and for a file that is not a result file, or is damaged before its last line.
+    pub fn read(path: &Path) -> anyhow::Result<Results> {
         let bytes = files::read(path)?;
         // A line without its newline is not finished, even if it can be read.
         let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
@@ -121,14 +96,14 @@ impl Results {
 }
 
 /// Reads the header, with a different error for each way in which the first line can be wrong.
-fn read_header(path: &Path, line: &[u8]) -> Result<Header, RecordError> {
+fn read_header(path: &Path, line: &[u8]) -> anyhow::Result<Header> {
     let value: serde_json::Value = serde_json::from_slice(line).map_err(|_| foreign(path))?;
     let version = value["yoro_bench"].as_u64().ok_or_else(|| foreign(path))?;
     if version != u64::from(VERSION) {
-        return Err(RecordError::Unusable(format!(
+        bail!(
             "{} has version {version} of the result format and this yoro reads version {VERSION}: use the yoro that wrote it, or measure again into another file",
             path.display()
-        )));
+        );
     }
     match serde_json::from_value(value) {
         Ok(Record::Header(header)) => Ok(header),
@@ -137,19 +112,17 @@ fn read_header(path: &Path, line: &[u8]) -> Result<Header, RecordError> {
     }
 }
 
-fn foreign(path: &Path) -> RecordError {
+fn foreign(path: &Path) -> anyhow::Error {
     let path = path.display();
-    RecordError::Unusable(format!(
-        "{path} is not a result of yoro bench (its first line is not a header): name another file"
-    ))
+    anyhow!("{path} is not a result of yoro bench (its first line is not a header): name another file")
 }
 
 /// Returns the error of a line, counted from 1.
-fn damaged(path: &Path, line: usize, error: &serde_json::Error) -> RecordError {
-    RecordError::Unusable(format!(
+fn damaged(path: &Path, line: usize, error: &serde_json::Error) -> anyhow::Error {
+    anyhow!(
         "{}, line {line} is damaged ({error}): restore the file from a copy, or measure again into another file",
         path.display()
-    ))
+    )
 }
 
 /// Appends to a file of results, a whole round at a time.
@@ -164,8 +137,8 @@ impl Writer {
     /// removed. Returns the finished results in it. Only one process at a time can have the file open.
     ///
     /// # Errors
-    /// [`RecordError`]; the file is then unchanged.
-    pub fn open(path: &Path, header: &Header) -> Result<(Writer, Results), RecordError> {
+    /// [`FileError`], also for a file that is another run's, or that cannot be read; it is then unchanged.
+    pub fn open(path: &Path, header: &Header) -> anyhow::Result<(Writer, Results)> {
         let failed = |source| FileError::Write { path: path.into(), source };
         let mut file = files::append(path)?;
         if file.metadata().map_err(failed)?.len() == 0 {
@@ -176,7 +149,10 @@ impl Writer {
         }
         let results = Results::read(path)?;
         if let Some((name, there, here)) = difference(&results.header, header) {
-            return Err(RecordError::Parameters { path: path.into(), name, there, here });
+            bail!(FileError::OtherRun(format!(
+                "{} holds results with {name} = {there}, and this run has {here}: give the same options to go on with it, or name another file",
+                path.display()
+            )));
         }
         file.set_len(results.finished_bytes).map_err(failed)?;
         Ok((Writer { file, path: path.into() }, results))
@@ -185,14 +161,14 @@ impl Writer {
     /// Appends the records of a round and its end, and waits until they are on the disk.
     ///
     /// # Errors
-    /// [`RecordError::File`]; the round then does not count, even if part of it was written.
-    pub fn append(&mut self, mut records: Vec<Record>, end: RoundEnd) -> Result<(), RecordError> {
+    /// [`FileError`]; the round then does not count, even if part of it was written.
+    pub fn append(&mut self, mut records: Vec<Record>, end: RoundEnd) -> Result<(), FileError> {
         records.push(Record::Round(end));
         let write = |file: &mut File| -> io::Result<()> {
             file.write_all(&lines(&records))?;
             file.sync_data()
         };
-        write(&mut self.file).map_err(|source| FileError::Write { path: self.path.clone(), source }.into())
+        write(&mut self.file).map_err(|source| FileError::Write { path: self.path.clone(), source })
     }
 }
 

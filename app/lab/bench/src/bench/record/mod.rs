@@ -32,7 +32,7 @@ use serde::{Deserialize, Serialize};
 use crate::machine::{Machine, Parameter};
 use yoro_assets::ShadingStyle;
 
-pub use file::{RecordError, Results, Writer};
+pub use file::{Results, Writer};
 
 /// The version of the format, increased when old readers would misread a new file.
 pub const VERSION: u32 = 1;

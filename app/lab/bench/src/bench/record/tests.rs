@@ -7,16 +7,7 @@ fn header() -> Header {
         yoro_bench: VERSION,
         suites: vec!["ipd".into()],
         quick: true,
-        machine: Machine {
-            cpu: "a CPU".into(),
-            cores: 2,
-            os: "Linux".into(),
-            gl_renderer: "llvmpipe".into(),
-            gl_version: "OpenGL ES 3.2".into(),
-            yoro: "0.1.0".into(),
-            date: "2026-01-01T00:00:00Z".into(),
-            command: "yoro bench ipd".into(),
-        },
+        machine: Machine { gl_renderer: "llvmpipe".into(), ..Machine::default() },
         pass_clock: PassClock::Finish,
         parameters: vec![Parameter { name: "rounds".into(), value: "2".into() }],
     }

@@ -156,7 +156,7 @@ fn overhead(suite: &SuiteData) -> Section {
          load over conventional rendering's.",
     );
     let ratio = |setting: &SettingData, name: &str| {
-        Some(setting.find(name)?.ratio(setting.conventional()?, metric::CPU_MS)?.median)
+        Some(setting.find(name)?.ratio(setting.find(CONVENTIONAL)?, metric::CPU_MS)?.median)
     };
     let papers = |setting: &SettingData| {
         paper_scene(setting).map_or_else(Vec::new, |scene| over_conventional(scene.cpu))
@@ -167,7 +167,7 @@ fn overhead(suite: &SuiteData) -> Section {
          conventional rendering's.",
     );
     let ratio = |setting: &SettingData, name: &str| {
-        let base = setting.conventional()?.mean(metric::MEMORY_MIB)?;
+        let base = setting.find(CONVENTIONAL)?.mean(metric::MEMORY_MIB)?;
         Some(setting.find(name)?.mean(metric::MEMORY_MIB)? / base)
     };
     let papers = |setting: &SettingData| {

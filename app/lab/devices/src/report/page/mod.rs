@@ -18,49 +18,6 @@ pub(super) use format::count;
 /// Label of the mean over all scenes of a device.
 const ALL_SCENES: &str = "all scenes";
 
-pub(super) fn report(report: &DeviceReport) -> Report {
-    let mark = simulated_mark(report);
-    let mut sections = Vec::new();
-    let mut overview = Section::new(format!("Change per device{mark}"), "");
-    overview_tables(report).into_iter().for_each(|table| overview.table(table));
-    sections.extend(Some(overview).filter(|overview| !overview.is_empty()));
-    for device in &report.devices {
-        let mut section = Section::new(&device.name, "");
-        section.text(Text::quiet(facts(report, device)));
-        change_plots(report, device).into_iter().for_each(|plot| section.plot(plot));
-        device_tables(report, device).into_iter().for_each(|table| section.table(table));
-        sections.push(section);
-    }
-    let mut doubts = Section::new(format!("What does not count, and what went wrong{mark}"), "");
-    doubts.table(notes_table("What does not count", &report.left_out, mark));
-    doubts.table(notes_table("What went wrong", &report.faults, mark));
-    let mut method = Section::new("How to read this", "");
-    method_notes(report).into_iter().for_each(|note| method.text(note));
-    method.text(Text::quiet(format!("`{}`", report.made_by)));
-    sections.extend([doubts, method]);
-    let warnings = warnings(report).into_iter().map(Text::warning);
-    let summary = warnings.chain(answers(report).into_iter().map(Text::from)).collect();
-    Report { title: title(report), summary, sections }
-}
-
-pub(super) fn text(report: &DeviceReport) -> String {
-    let mut out = String::new();
-    for line in warnings(report).into_iter().chain(answers(report)) {
-        let _ = writeln!(out, "{}", line.replace("**", ""));
-    }
-    let runs = report.runs.len();
-    let whole = report.runs.iter().filter(|run| run.exclusions.is_empty()).count();
-    let _ = writeln!(
-        out,
-        "{whole} of {runs} runs count in full; {} faults are named in the report.",
-        report.faults.len()
-    );
-    for note in &report.left_out {
-        let _ = writeln!(out, "{}: {} ({})", note.of, note.detail, note.name);
-    }
-    out
-}
-
 fn title(report: &DeviceReport) -> String {
     let names: Vec<&str> = report.devices.iter().map(|device| device.name.as_str()).collect();
     match names.len() {
@@ -102,6 +59,50 @@ fn warnings(report: &DeviceReport) -> Vec<String> {
 }
 
 impl DeviceReport {
+    pub(super) fn report(&self) -> Report {
+        let mark = simulated_mark(self);
+        let mut sections = Vec::new();
+        let mut overview = Section::new(format!("Change per device{mark}"), "");
+        overview_tables(self).into_iter().for_each(|table| overview.table(table));
+        sections.extend(Some(overview).filter(|overview| !overview.is_empty()));
+        for device in &self.devices {
+            let mut section = Section::new(&device.name, "");
+            section.text(Text::quiet(facts(self, device)));
+            change_plots(self, device).into_iter().for_each(|plot| section.plot(plot));
+            device_tables(self, device).into_iter().for_each(|table| section.table(table));
+            sections.push(section);
+        }
+        let mut doubts = Section::new(format!("What does not count, and what went wrong{mark}"), "");
+        doubts.table(notes_table("What does not count", &self.left_out, mark));
+        doubts.table(notes_table("What went wrong", &self.faults, mark));
+        let mut method = Section::new("How to read this", "");
+        method_notes(self).into_iter().for_each(|note| method.text(note));
+        method.text(Text::quiet(format!("`{}`", self.made_by)));
+        sections.extend([doubts, method]);
+        let warnings = warnings(self).into_iter().map(Text::warning);
+        let summary = warnings.chain(answers(self).into_iter().map(Text::from)).collect();
+        Report { title: title(self), summary, sections }
+    }
+
+    /// Returns the answers for a terminal.
+    pub fn to_text(&self) -> String {
+        let mut out = String::new();
+        for line in warnings(self).into_iter().chain(answers(self)) {
+            let _ = writeln!(out, "{}", line.replace("**", ""));
+        }
+        let runs = self.runs.len();
+        let whole = self.runs.iter().filter(|run| run.exclusions.is_empty()).count();
+        let _ = writeln!(
+            out,
+            "{whole} of {runs} runs count in full; {} faults are named in the report.",
+            self.faults.len()
+        );
+        for note in &self.left_out {
+            let _ = writeln!(out, "{}: {} ({})", note.of, note.detail, note.name);
+        }
+        out
+    }
+
     fn find(
         &self,
         device: &str,

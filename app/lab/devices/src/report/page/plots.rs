@@ -31,8 +31,8 @@ fn change_plot(report: &DeviceReport, device: &Device, quantity: Quantity) -> Pl
                 plot.mark_interval(row, Entry::ours(method), ours.change, interval);
             }
             let papers = papers_changes(scene, method).and_then(|papers| match quantity {
-                Quantity::Power => Some(papers.power),
-                Quantity::Fps => Some(papers.fps),
+                Quantity::Power => Some(papers[0]),
+                Quantity::Fps => Some(papers[1]),
                 _ => None,
             });
             let entry = match method.as_str() {

@@ -70,13 +70,12 @@ pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
     tables
 }
 
-/// Returns the tables of a device, without empty ones.
+/// Returns the tables of a device.
 pub fn device_tables(report: &DeviceReport, device: &Device) -> Vec<Table> {
     let halves = [FIRST_HALF, SECOND_HALF];
     let mut tables: Vec<Table> = halves.map(|half| difference_table(report, device, half)).into();
     tables.extend(halves.map(|half| mean_table(report, device, half)));
     tables.push(power_table(report, device));
-    tables.retain(|table| !table.lines.is_empty());
     tables
 }
 
@@ -107,7 +106,7 @@ fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantit
         let text = |d: &Difference| format!("{}{}", change(d), change_interval(d));
         cells.extend(quantities.map(|quantity| Cell::ours(find(quantity).map(text))));
         if with_paper {
-            let papers = papers_changes(scene, method).map(|papers| [papers.power, papers.fps]);
+            let papers = papers_changes(scene, method);
             cells.extend([0, 1].map(|i| Cell::paper(papers.map(|papers| format!("{:+.1} %", papers[i])))));
         }
         Some(cells)
@@ -126,17 +125,9 @@ fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantit
     table
 }
 
-/// The paper's change against conventional rendering in percent.
-pub struct PapersChange {
-    /// Change of power.
-    pub power: f64,
-    /// Change of the frame rate.
-    pub fps: f64,
-}
-
-/// Returns the paper's change for the system and scene that correspond to a method and a scene. `None` for the scene
-/// stands for the mean over all scenes.
-pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<PapersChange> {
+/// Returns the paper's changes of power and of the frame rate against conventional rendering, in percent, for the system
+/// and scene that correspond to a method and a scene. `None` for the scene stands for the mean over all scenes.
+pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<[f64; 2]> {
     let system = if method.starts_with("yoro") { "yoro-paper" } else { method };
     let at = paper::SYSTEMS.iter().position(|name| *name == system).filter(|at| *at != 1)?;
     let (power, fps) = match scene {
@@ -150,8 +141,7 @@ pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<PapersChange>
             ([mean(0), mean(1), mean(2)], PAPER.average.fps)
         }
     };
-    let change = |values: [f64; 3]| 100.0 * (values[at] / values[1] - 1.0);
-    Some(PapersChange { power: change(power), fps: change(fps) })
+    Some([power, fps].map(|values| 100.0 * (values[at] / values[1] - 1.0)))
 }
 
 fn mean_table(report: &DeviceReport, device: &Device, quantities: [Quantity; 5]) -> Table {

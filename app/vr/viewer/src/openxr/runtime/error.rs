@@ -38,7 +38,6 @@ impl std::error::Error for NotFound {}
 
 /// A failure at one place. Its sentence names the failed step, and the file, library or broker.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum Failure {
     /// Nothing is installed here: no manifest, no broker, or none with an active runtime.
     #[error("{0}")]
