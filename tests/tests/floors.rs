@@ -25,15 +25,15 @@ const MANIFESTS: [&str; 2] = ["Cargo.toml", "app/engines/bevy/Cargo.toml"];
 /// Thousands of lines of Rust that each floor may have. Room for a new thing is made by an old one; a change that needs more
 /// changes this table, and its commit says why.
 const LINES: [(&str, f64); 10] = [
-    ("app/engines", 40.9),
-    ("app/base", 11.0),
+    ("app/engines", 40.6),
+    ("app/base", 10.8),
     ("app/vr", 29.3),
-    ("app/lab", 19.3),
+    ("app/lab", 19.0),
     ("app/program", 6.2),
     ("android", 4.7),
     ("scenes", 12.9),
     ("shaders-glsl", 0.3),
-    ("tests", 23.8),
+    ("tests", 23.6),
     ("xtask", 10.7),
 ];
 /// Thousands of words that all documents may have, without the tables that are made of docs/results, which nobody writes.
