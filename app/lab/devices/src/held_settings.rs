@@ -127,7 +127,7 @@ pub struct HeldSettings {
 impl HeldSettings {
     /// Restores values that an earlier run has left behind, then sets the wanted ones, keeps the screen on, silences
     /// notifications, and clears the application's own properties, which would override a run's settings. Tells a Meta
-    /// headset that it is worn. Values that the device refuses to change are listed in [`HeldSettings::refused`].
+    /// headset that it is worn. Values that the device refuses to change are kept, and told by a sentence each.
     ///
     /// # Errors
     /// [`DeviceError`]. The next call restores everything that was changed.
