@@ -8,7 +8,7 @@ use crate::program::{run, succeed};
 #[test]
 fn a_report_of_every_method() {
     let dir = tempfile::tempdir().unwrap();
-    let said = succeed(dir.path(), "run prototype --viewpoints 1 --size 96x96").stdout;
+    let said = succeed(dir.path(), "run prototype --pipelines gather,paper --size 96x96").stdout;
     for needed in
         ["the first picture: out/prototype.yoro-paper.png", "conventional", "yoro-gather", "out/report.html"]
     {

@@ -677,7 +677,7 @@ fn the_kits_shaders_for_godot_compile() {
             }
         }
     }
-    assert_eq!(count, 16);
+    assert_eq!(count, 18);
     if !is_here(COMPILER) {
         println!("SKIPPED: {COMPILER} is not here");
     }

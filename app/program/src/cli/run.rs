@@ -37,8 +37,8 @@ pub struct RunArgs {
     /// Methods to compare with rendering both eyes; `yoro` stands for all of --pipelines
     #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Synthesized.name(), value_name = "METHODS")]
     methods: Vec<Method>,
-    /// Pipelines to compare
-    #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_value = Pipeline::ALL.map(Pipeline::name).join(","))]
+    /// Pipelines to compare; `paper` is that of the paper
+    #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_value = Pipeline::Gather.name())]
     pipelines: Vec<Pipeline>,
     /// Seed of the built-in scenes
     #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED, value_parser = args::whole::<u64>(0..=u64::MAX), value_name = "N")]
