@@ -643,9 +643,9 @@ fn foveated_eyes_are_composed_for_runtimes_without_insets() {
         simulated.succeed(&format!("--frames 2 --set foveation={foveation}"));
         simulated
     });
-    // The runtime's own foveation is set for the pass that composes.
+    // The runtime's own foveation is set for the pass that composes, in both eyes' swapchains.
     let levels = [&whole, &foveated].map(|run| run.requests("foveation"));
-    assert_eq!(levels, [vec![], vec![2.0]]);
+    assert_eq!(levels, [vec![], vec![2.0, 2.0]]);
     let (_, views) = foveated.views().pop().unwrap();
     for (i, view) in views.iter().enumerate() {
         let depth = view.depth.as_ref().unwrap().image.rect;
