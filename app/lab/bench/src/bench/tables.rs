@@ -67,7 +67,7 @@ pub(super) fn cost_of(setting: &SettingData, name: &str) -> Option<String> {
     Some(format!("{median:.2} ({low:.2}–{high:.2})"))
 }
 
-/// Formats the geometric mean of ratios, with the least and the most of them: `0.54 (0.50–0.58)`; `None` without any.
+/// Formats the geometric mean of ratios with the lowest and the highest: `0.54 (0.50–0.58)`; `None` if there are none.
 pub(super) fn mean_and_range(ratios: impl Iterator<Item = f64>) -> Option<String> {
     let ratios: Vec<f64> = ratios.collect();
     let range = ratios.iter().fold([f64::MAX, f64::MIN], |[low, high], r| [low.min(*r), high.max(*r)]);

@@ -143,11 +143,10 @@ impl EyeTarget<'_> {
         }
     }
 
-    /// True if the target begins in the corner of a texture of this size that is read as it is stored.
-    pub(super) fn has_room(&self, size: [u32; 2], renderer: &Renderer, scene: &GpuScene) -> bool {
+    /// True if a view of this size can be rendered into the texture, and read there as it is stored.
+    pub(super) fn takes_view(&self, size: [u32; 2], renderer: &Renderer, scene: &GpuScene) -> bool {
         let is_read = |format| format == Format::Rgba8 || renderer.reads_stored(scene);
-        let fits = |(_, image): (glow::Texture, Image)| image.size == size && is_read(image.format);
-        self.color.origin == [0, 0] && self.texture.is_some_and(fits)
+        self.texture.is_some_and(|(_, image)| image.size == size && is_read(image.format))
     }
 
     /// Returns the texture as the target of a view of which the eye is this part, if the texture is as large as the view and
@@ -158,9 +157,8 @@ impl EyeTarget<'_> {
         renderer: &Renderer,
         scene: &GpuScene,
     ) -> Option<EyeTarget<'static>> {
-        let corner = EyeTarget { color: Destination { origin: [0, 0], ..self.color }, ..*self };
-        let has_room = self.color.origin == part.origin && corner.has_room(part.image_size, renderer, scene);
-        let texture = self.texture.filter(|_| has_room)?;
+        let fits = self.color.origin == part.origin && self.takes_view(part.image_size, renderer, scene);
+        let texture = self.texture.filter(|_| fits)?;
         let color = Destination { origin: [0, 0], size: part.image_size, ..self.color };
         Some(EyeTarget { texture: Some(texture), ..EyeTarget::rectangle(color) })
     }

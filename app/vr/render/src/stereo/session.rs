@@ -248,10 +248,13 @@ impl StereoSession {
             (FrameTargets::Layers(layers), _) => *layers,
             (FrameTargets::Eyes(to), None) => {
                 let dominant = &mut to[views.shown.dominant.index()];
-                if let Some(part) =
-                    parts[0].filter(|part| dominant.has_room(part.image_size, &scene.renderer, &scene.scene))
-                {
-                    (dominant.color.origin, origin) = (part.origin, part.origin);
+                let takes = |part: &Part| {
+                    dominant.color.origin == [0, 0]
+                        && dominant.takes_view(part.image_size, &scene.renderer, &scene.scene)
+                };
+                if let Some(part) = parts[0].filter(takes) {
+                    origin = part.origin;
+                    dominant.color.origin = origin;
                 }
                 LayerTargets { wide: *to, inset: None }
             }

@@ -216,12 +216,8 @@ impl Images {
     }
 }
 
-/// The images of both eyes.
-pub(super) struct EyeImages {
-    eyes: [Images; 2],
-    /// Where each eye begins in the image that was drawn last.
-    origins: [[u32; 2]; 2],
-}
+/// The images of both eyes, by [`Eye::index`].
+pub(super) struct EyeImages([Images; 2]);
 
 impl EyeImages {
     /// Creates the images.
@@ -232,10 +228,11 @@ impl EyeImages {
         spec: ImageSpec,
     ) -> Result<EyeImages, XrError> {
         let image = || Images::new(graphics, gl, session, spec);
-        Ok(EyeImages { eyes: [image()?, image()?], origins: [[0, 0]; 2] })
+        Ok(EyeImages([image()?, image()?]))
     }
 
-    /// Makes an eye's images of this size, unless they have it. Returns true if they were made. If they cannot be, they stay.
+    /// Replaces an eye's images by images of this size, unless they have it. Returns true if they were replaced; if that
+    /// fails, they stay.
     pub fn fit(
         &mut self,
         graphics: &dyn Graphics,
@@ -244,7 +241,7 @@ impl EyeImages {
         eye: Eye,
         size: [u32; 2],
     ) -> Result<bool, XrError> {
-        let images = &mut self.eyes[eye.index()];
+        let images = &mut self.0[eye.index()];
         let fits = images.spec.size == size;
         if !fits {
             *images = Images::new(graphics, gl, session, ImageSpec { size, ..images.spec })?;
@@ -252,31 +249,26 @@ impl EyeImages {
         Ok(!fits)
     }
 
-    /// Sets where an eye begins in the acquired image.
-    pub fn set_origin(&mut self, eye: Eye, origin: [u32; 2]) {
-        self.origins[eye.index()] = origin;
-    }
-
     /// Returns the swapchains.
     pub fn swapchains(&self) -> impl Iterator<Item = sys::Swapchain> {
-        self.eyes.iter().map(|images| images.swapchain.as_raw())
+        self.0.iter().map(|images| images.swapchain.as_raw())
     }
 
     pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
-        self.eyes.iter_mut().try_for_each(|images| images.acquire(graphics))
+        self.0.iter_mut().try_for_each(|images| images.acquire(graphics))
     }
 
     pub fn release(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
-        self.eyes.iter_mut().try_for_each(|images| images.release(graphics))
+        self.0.iter_mut().try_for_each(|images| images.release(graphics))
     }
 
     pub fn close(&mut self) {
-        self.eyes.iter_mut().for_each(Images::close);
+        self.0.iter_mut().for_each(Images::close);
     }
 
     /// Returns the destinations of both eyes, in the lower left of their images.
     pub fn destinations(&self, size: [u32; 2]) -> Option<[Destination; 2]> {
-        let [left, right] = Eye::BOTH.map(|eye| self.eyes[eye.index()].destination(size));
+        let [left, right] = Eye::BOTH.map(|eye| self.0[eye.index()].destination(size));
         Some([left?, right?])
     }
 
@@ -287,7 +279,7 @@ impl EyeImages {
         depth: &EyeImages,
         size: [u32; 2],
     ) -> Result<Option<[Destination; 2]>, GlError> {
-        let mut of = |eye: Eye| self.eyes[eye.index()].with_depth(gl, size, &depth.eyes[eye.index()]);
+        let mut of = |eye: Eye| self.0[eye.index()].with_depth(gl, size, &depth.0[eye.index()]);
         Ok(of(Eye::Left)?.zip(of(Eye::Right)?).map(|(left, right)| [left, right]))
     }
 
@@ -295,13 +287,13 @@ impl EyeImages {
     pub fn targets(&self, size: [u32; 2]) -> Option<[EyeTarget<'static>; 2]> {
         let colors = self.destinations(size)?;
         Some(Eye::BOTH.map(|eye| EyeTarget {
-            texture: self.eyes[eye.index()].texture(),
+            texture: self.0[eye.index()].texture(),
             ..EyeTarget::rectangle(colors[eye.index()])
         }))
     }
 
-    /// Returns an eye's rectangle, as xrEndFrame takes it.
-    pub fn sub_image(&self, eye: Eye, size: [u32; 2]) -> sys::SwapchainSubImage {
-        self.eyes[eye.index()].sub_image(self.origins[eye.index()], size)
+    /// Returns a rectangle of an eye's image, as xrEndFrame takes it.
+    pub fn sub_image(&self, eye: Eye, origin: [u32; 2], size: [u32; 2]) -> sys::SwapchainSubImage {
+        self.0[eye.index()].sub_image(origin, size)
     }
 }

@@ -152,8 +152,8 @@ impl MotionImages {
             return None;
         }
         let [near_z, far_z] = ends(range);
-        let motion_vector_sub_image = self.vectors.sub_image(eye, self.size);
-        let depth_sub_image = self.depth.sub_image(eye, self.size);
+        let motion_vector_sub_image = self.vectors.sub_image(eye, [0, 0], self.size);
+        let depth_sub_image = self.depth.sub_image(eye, [0, 0], self.size);
         // The user's jumps are not extrapolated at all.
         let app_space_delta_pose = xr::Posef::IDENTITY;
         let next = std::ptr::null();

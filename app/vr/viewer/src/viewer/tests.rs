@@ -65,7 +65,7 @@ impl Run {
     }
 
     fn load(&mut self) {
-        wait(&mut self.viewer);
+        finish_loading(&mut self.viewer);
     }
 
     fn image(&self) -> Vec<u8> {
@@ -80,11 +80,18 @@ impl Run {
 }
 
 /// Waits until the scene is loaded, or cannot be.
-fn wait(viewer: &mut Cardboard) {
+fn finish_loading(viewer: &mut Cardboard) {
     while viewer.viewer().is_loading() {
         viewer.viewer_mut().poll_scene();
         std::thread::sleep(Duration::from_millis(2));
     }
+}
+
+/// Waits until the scene is loaded.
+#[track_caller]
+fn wait(viewer: &mut Cardboard) {
+    finish_loading(viewer);
+    assert_eq!(viewer.viewer().scene_state(), SceneState::Ready);
 }
 
 #[test]

@@ -104,7 +104,7 @@ fn slopes(suite: &SuiteData) -> Table {
     }
     push_refusals(&mut table, suite);
     table.note = "The paper's slopes are least-squares fits to its nine points. Its “51.40 %” omits the smallest scene; \
-                  the ratio here is the mean of all nine. Ours have the least and the most of the sizes."
+                  the ratio here is the mean of all nine. Ours is followed by the lowest and the highest."
         .into();
     table
 }

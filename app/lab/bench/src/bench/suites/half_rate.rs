@@ -122,7 +122,9 @@ impl Experiment for HalfRate {
             let ratios = suite.labelled(label).filter_map(|setting| Some(setting.cost(name)?.median));
             mean_and_range(ratios)
         });
-        table.note = "Medians; their mean over the scenes, the least and the most. What the runtime does is not counted, nor is moving the scene's vertices.".into();
+        table.note = "The mean of the scenes' medians, with the lowest and the highest. What the runtime does is not counted, nor is \
+                      moving the scene's vertices."
+            .into();
         section.table(table);
         vec![section]
     }

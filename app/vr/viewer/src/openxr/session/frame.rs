@@ -22,7 +22,8 @@ use yoro_settings::Ipd;
 
 /// Both eyes and their insets.
 const MAX_VIEWS: usize = 4;
-/// An eye's images are made for another size at most so often: eyes of a runtime that never keep still are copied.
+/// The most times that an eye's images are made anew for another size. If a runtime's frusta change more often than that, the
+/// rendered eye is copied.
 const MAX_REMADE: u32 = 32;
 
 /// The layers of a frame.
@@ -186,11 +187,8 @@ impl Session {
             None => FrameTargets::Eyes(to.wide),
         };
         let rendered = viewer.render(views, targets);
-        let (dominant, origin) =
-            (views.shown.dominant, rendered.as_ref().map_or([0, 0], |report| report.origin));
-        colors[dominant.index()].origin = origin;
-        self.wide.eyes.set_origin(dominant, origin);
-        self.wide.eyes.set_origin(dominant.other(), [0, 0]);
+        let origin = rendered.as_ref().map_or([0, 0], |report| report.origin);
+        colors[views.shown.dominant.index()].origin = origin;
         let is_previous = leaves_frame && rendered.is_ok();
         if let Some(motion) = &mut self.motion {
             motion.remember(is_previous.then_some((views.shown, place)));
@@ -298,7 +296,7 @@ impl Session {
             next: std::ptr::null(),
             pose: xr::Posef::IDENTITY,
             fov: xr::Fovf::default(),
-            sub_image: self.wide.eyes.sub_image(Eye::Left, [0; 2]),
+            sub_image: self.wide.eyes.sub_image(Eye::Left, [0, 0], [0, 0]),
         }; MAX_VIEWS];
         let mut count = 0;
         for (i, (eye, (level, pair, _))) in submitted().enumerate().take(MAX_VIEWS) {
@@ -306,7 +304,8 @@ impl Session {
             view.next = depths[i].as_ref().map_or(after(i), |info| std::ptr::from_ref(info).cast());
             view.pose = from_pose(&pair.poses[eye.index()]);
             view.fov = from_frustum(&pair.frusta[eye.index()]);
-            view.sub_image = level.eyes.sub_image(eye, pair.size);
+            let origin = eyes.filter(|_| eye == pair.dominant).map_or([0, 0], |eyes| eyes.drawn.origin);
+            view.sub_image = level.eyes.sub_image(eye, origin, pair.size);
             count += 1;
         }
         let is_one = self.views == xr::ViewConfigurationType::PRIMARY_MONO;
@@ -374,7 +373,7 @@ fn depth_info(
     sys::CompositionLayerDepthInfoKHR {
         ty: sys::CompositionLayerDepthInfoKHR::TYPE,
         next,
-        sub_image: images.sub_image(eye, size),
+        sub_image: images.sub_image(eye, [0, 0], size),
         min_depth: 0.0,
         max_depth: 1.0,
         near_z,
