@@ -63,10 +63,11 @@ impl Assumed {
                     let reading = meshes().filter(|draw| has_map(draw, uniform));
                     return reading.map(|draw| fragments(pass, draw)).sum();
                 }
-                // A pass with several draw calls declares an image for each.
-                let largest = pass.draws.iter().max_by(|a, b| pixels(a.area).total_cmp(&pixels(b.area)));
+                // A pass with several draw calls declares an image for each, or one for all of them.
+                let of_image = pass.draws.iter().find(|draw| draw.area == image.size);
+                let largest = || pass.draws.iter().max_by(|a, b| pixels(a.area).total_cmp(&pixels(b.area)));
                 let share = if name == MARCH && uniform == "depth_map" { 1.0 - self.laws } else { 1.0 };
-                share * largest.map_or(0.0, |draw| once(image, draw))
+                share * of_image.or_else(largest).map_or(0.0, |draw| once(image, draw))
             }
         }
     }

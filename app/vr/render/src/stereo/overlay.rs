@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::frame::Frame;
-use crate::view::{DepthImage, MARKED_DEPTH, Rectangle, Renderer};
+use crate::view::{DepthImage, MARKED_DEPTH, Region, Renderer};
 use yoro::eyes::{DepthConvention, Eye};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, Texture, TileTarget,
@@ -23,9 +23,9 @@ pub(super) struct OverlaySurfaces {
 }
 
 impl OverlaySurfaces {
-    /// Returns the part of an eye in which its depth is needed: where transparent surfaces are drawn over it.
-    pub(super) fn depth_part(&self, frame: &Frame, eye: Eye) -> Option<Rectangle> {
-        frame.scene.transparent_part(&frame.pair.view(eye)).filter(|_| self.transparent)
+    /// Returns the region of an eye in which its depth is needed: where transparent surfaces are drawn over it.
+    pub(super) fn depth_region(&self, frame: &Frame, eye: Eye) -> Option<Region> {
+        frame.scene.transparent_region(&frame.pair.view(eye)).filter(|_| self.transparent)
     }
 }
 

@@ -70,8 +70,8 @@ impl StereoMethod for ShadingReprojection {
         let transparent = frame.scene.is_transparent_in(&view);
         let surfaces = OverlaySurfaces { transparent, ..OverlaySurfaces::default() };
         let (place, has_depth) = over.begin(frame, eye, &surfaces)?;
-        let part = surfaces.depth_part(frame, eye).filter(|_| has_depth);
-        over.draw(|| renderer.composite(dominant, &view, Eye::Left, [0, 0], &place, part));
+        let region = surfaces.depth_region(frame, eye).filter(|_| has_depth);
+        over.draw(|| renderer.composite(dominant, &view, Eye::Left, [0, 0], &place, region));
         over.finish(frame, eye, &surfaces);
         if frame.wants_depth(eye) {
             frame.write_depth(eye, &dominant.depth(view.size, Eye::Left, [0, 0]));

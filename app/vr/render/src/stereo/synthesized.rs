@@ -209,9 +209,9 @@ impl StereoMethod for Synthesized {
             renderer.draw_over_source(targets, &frame.scene, &views.source, seen, &shown)?;
         } else {
             let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
-            let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
+            let region = surfaces.depth_region(frame, dominant).filter(|_| has_depth);
             over.draw(|| {
-                renderer.composite(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
+                renderer.composite(targets, &views.source, Eye::Left, views.dominant_crop, &to, region);
             });
             over.finish(frame, dominant, &surfaces);
         }

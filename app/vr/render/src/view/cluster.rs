@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec3, Vec3Swizzles, Vec4};
 
 use super::uniforms::eye_to_clip;
 use yoro::eyes::View;
-use yoro_assets::{Bounds, Model, Vertex};
+use yoro_assets::{Alpha, Bounds, Model, Vertex};
 
 /// Number of floats in the position, normal and uv of a [`Vertex`].
 pub(super) const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
@@ -14,6 +14,8 @@ pub(super) const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
 const SPLIT_ABOVE: usize = 4096;
 /// Neighbouring parts are gathered into one cluster up to this many triangles.
 const GATHER_UP_TO: usize = 512;
+/// The largest number of triangles in a box of [`Clusters::blended`].
+const BLENDED_IN_BOX: usize = 16;
 
 /// A run of indices of one material that is compact in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +45,8 @@ pub struct Clusters {
     pub clusters: Vec<Cluster>,
     /// One batch for each material in use, ordered by material.
     pub batches: Vec<Batch>,
+    /// Boxes around a few blended triangles each, which together contain all of them.
+    pub blended: Vec<Bounds>,
     /// The model's indices in the order of the clusters.
     pub indices: Vec<u32>,
 }
@@ -59,6 +63,7 @@ pub fn build(model: &Model) -> Clusters {
     let mut built = Clusters {
         clusters: Vec::new(),
         batches: Vec::new(),
+        blended: Vec::new(),
         indices: Vec::with_capacity(model.indices.len()),
     };
     // First indices of triangles, sorted within each part.
@@ -78,6 +83,9 @@ pub fn build(model: &Model) -> Clusters {
         let first = built.clusters.len();
         gather_units(model, &mut units, &triangles, &mut built);
         built.batches.push(Batch { material, clusters: first..built.clusters.len(), moves: false });
+        if matches!(model.materials[material].alpha, Alpha::Blend(_)) {
+            enclose(model, &mut triangles, &mut built.blended);
+        }
     }
     built
 }
@@ -87,11 +95,16 @@ fn corners(model: &Model, triangle: u32) -> impl Iterator<Item = &Vertex> {
     model.indices[i..i + 3].iter().map(|&v| &model.vertices[v as usize])
 }
 
+/// Returns the smallest box around triangles.
+fn bounds_of(model: &Model, triangles: &[u32]) -> Bounds {
+    let vertices = triangles.iter().flat_map(|&t| corners(model, t));
+    vertices.fold(Bounds::EMPTY, |bounds, vertex| bounds.including(vertex.position))
+}
+
 /// Splits `triangles[first..]` at the median of the longest axis until the pieces are small enough.
 fn split_triangles(model: &Model, triangles: &mut [u32], first: usize, units: &mut Vec<Unit>) {
     let piece = &mut triangles[first..];
-    let bounds =
-        piece.iter().flat_map(|&t| corners(model, t)).fold(Bounds::EMPTY, |b, v| b.including(v.position));
+    let bounds = bounds_of(model, piece);
     let middle = piece.len() / 2;
     if piece.len() <= SPLIT_ABOVE {
         units.push(Unit { bounds, triangles: first..first + piece.len() });
@@ -103,6 +116,29 @@ fn split_triangles(model: &Model, triangles: &mut [u32], first: usize, units: &m
     });
     split_triangles(model, &mut triangles[..first + middle], first, units);
     split_triangles(model, triangles, first + middle, units);
+}
+
+/// Appends boxes around a few triangles each. Triangles with much space between them get boxes of their own.
+fn enclose(model: &Model, triangles: &mut [u32], boxes: &mut Vec<Bounds>) {
+    let surface = |bounds: Bounds| {
+        let size = bounds.max - bounds.min;
+        size.dot(size.yzx())
+    };
+    let bounds = bounds_of(model, triangles);
+    let axis = (bounds.max - bounds.min).max_position();
+    let center = |t: u32| corners(model, t).map(|v| v.position[axis]).sum::<f32>() / 3.0;
+    triangles.sort_unstable_by_key(|&t| ordered(center(t)));
+    let middle = triangles.partition_point(|&t| center(t) < bounds.center()[axis]);
+    let (low, high) = triangles.split_at_mut(middle);
+    let is_split = !low.is_empty() && !high.is_empty();
+    let are_far_apart =
+        || surface(bounds_of(model, low)) + surface(bounds_of(model, high)) < 0.5 * surface(bounds);
+    if is_split && (low.len() + high.len() > BLENDED_IN_BOX || are_far_apart()) {
+        enclose(model, low, boxes);
+        enclose(model, high, boxes);
+    } else {
+        boxes.push(bounds);
+    }
 }
 
 /// Maps a finite float to an integer; the integers sort as the floats do.
@@ -232,7 +268,8 @@ mod tests {
 
     #[test]
     fn every_triangle_is_in_one_cluster_of_its_material() {
-        let model = random_model(&mut Pcg64::seed_from_u64(1));
+        let mut model = random_model(&mut Pcg64::seed_from_u64(1));
+        model.materials[0].alpha = Alpha::Blend(0.5);
         let built = build(&model);
         let mut expected: HashMap<[u32; 3], usize> = HashMap::new();
         for part in &model.parts {
@@ -256,6 +293,10 @@ mod tests {
             }
         }
         assert!(expected.is_empty());
+        let is_blended = |position| built.blended.iter().any(|bounds| bounds.distance(position) == 0.0);
+        let blended =
+            model.parts.iter().filter(|part| part.material == 0).flat_map(|part| part.indices.clone());
+        assert!(blended.into_iter().all(|i| is_blended(model.vertices[model.indices[i] as usize].position)));
         let used: Vec<_> = built.batches.iter().map(|b| b.material).collect();
         assert_eq!(used, [0, 1, 2, 4]);
     }

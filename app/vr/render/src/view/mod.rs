@@ -39,7 +39,7 @@ pub(crate) use layout::{Layout, Seam};
 pub(crate) use lit::LitScene;
 pub(crate) use passes::Reprojection;
 pub use read_back::{DepthReader, ViewReader};
-pub(crate) use rectangle::Rectangle;
+pub(crate) use rectangle::{Rectangle, Region};
 pub use renderer::{RenderedView, Renderer, ViewTargets};
 pub use scene::GpuScene;
 pub use settings::{MAX_POINT_LIGHTS, MSAA, RenderSettings};

@@ -10,7 +10,7 @@ use super::layout::Layout;
 use super::light_tiles::LightTiles;
 use super::lights::Lights;
 use super::lit::LitScene;
-use super::rectangle::Rectangle;
+use super::rectangle::{Rectangle, Region};
 use super::renderer::{Composite, Outlines, Renderer, Resolve};
 use super::scene::{FREE_UNIT, GpuScene, MAP_NAMES};
 use super::settings::SAMPLE_DEPTH;
@@ -193,7 +193,7 @@ impl Renderer {
     }
 
     /// Draws the transparent surfaces over the picture of a view, where it is seen in the rectangle `shown` of `to`, into
-    /// which the view was drawn. Only the rectangle around them is loaded, with its depth, and stored.
+    /// which the view was drawn. Only the region around them is loaded, with its depth, and stored.
     pub(crate) fn draw_over_source(
         &self,
         targets: &mut Targets,
@@ -202,23 +202,25 @@ impl Renderer {
         shown: Rectangle,
         to: &EyeTarget,
     ) -> Result<(), GlError> {
-        let part = scene.transparent_part(view).and_then(|part| part.within(&shown));
-        let Some(part @ Rectangle { origin, size }) = part else { return Ok(()) };
+        let Some(region) = scene.transparent_region(view) else { return Ok(()) };
+        let parts = || region.rectangles().filter_map(|part| part.within(&shown));
         let framebuffer = targets.fit_over(view.size)?.framebuffer;
-        let place = Destination { framebuffer, origin, size };
-        let color = Image { size, ..targets.picture().1 };
-        let depth = targets.depth(view.size, Eye::Left, origin);
-        let known = Image { size, ..depth.texture.image() };
-        match targets.onto {
-            Onto::Resolved => self.gl.pass("load").read("copied", known).load([color]).run(|| {}),
-            Onto::Tile => {
-                let pass = self.gl.pass("load").read("depth_map", known).load([color]);
-                let copy = self.depth_load.as_ref();
-                pass.run(|| {
-                    copy.map(|copy| copy.draw(&depth, &place, view.depth.convention, [[1.0; 2], [0.0; 2]]))
-                });
+        let place = |Rectangle { origin, size }| Destination { framebuffer, origin, size };
+        let picture = targets.picture().1;
+        let color = |Rectangle { size, .. }| Image { size, ..picture };
+        for part in parts() {
+            let depth = targets.depth(view.size, Eye::Left, part.origin);
+            let known = Image { size: part.size, ..depth.texture.image() };
+            let pass = || self.gl.pass("load").load([color(part)]);
+            match targets.onto {
+                Onto::Resolved => pass().read("copied", known).run(|| {}),
+                Onto::Tile => pass().read("depth_map", known).run(|| {
+                    if let Some(load) = &self.depth_load {
+                        load.draw(&depth, &place(part), view.depth.convention, [[1.0; 2], [0.0; 2]]);
+                    }
+                }),
+                Onto::Samples => self.load(targets, view, part.origin, targets, &place(part)),
             }
-            Onto::Samples => self.load(targets, view, origin, targets, &place),
         }
         self.gl.bind_framebuffer(framebuffer, [0, 0], view.size);
         let variant = Variant {
@@ -227,13 +229,16 @@ impl Renderer {
         };
         let views = std::slice::from_ref(view);
         let light = self.illuminate(Layout::Single, scene, views);
-        self.transparent.run(variant, scene, views, &light, Some(&part));
+        self.transparent.run(variant, scene, views, &light, Some(&shown));
         match (targets.onto, targets.multisample()) {
             (Onto::Tile, _) => targets.discard_depth(),
             (Onto::Samples, Some(samples)) => {
+                let framebuffer = to.color.framebuffer;
                 let pass = self.gl.pass("resolve").in_tile(samples.images());
-                pass.write([color]).run(|| {
-                    samples.average(0, &Destination { framebuffer: to.color.framebuffer, ..place });
+                pass.write(parts().map(color)).run(|| {
+                    for part in parts() {
+                        samples.average(0, &Destination { framebuffer, ..place(part) });
+                    }
                     samples.discard(true, true);
                 });
             }
@@ -445,7 +450,7 @@ impl Renderer {
         }
     }
 
-    /// Writes a part of an eye's image, from pixel `crop` of the eye on, with bloom. In the rectangle `depth` of the target
+    /// Writes a part of an eye's image, from pixel `crop` of the eye on, with bloom. In the region `depth` of the target
     /// it also writes the depth of the image, to draw more over it.
     pub(crate) fn composite(
         &self,
@@ -454,7 +459,7 @@ impl Renderer {
         eye: Eye,
         crop: [u32; 2],
         to: &Destination,
-        depth: Option<Rectangle>,
+        depth: Option<Region>,
     ) {
         let kind = Composite { bloom: self.bloom.is_some(), ..Composite::default() };
         self.composite_as(targets, view, eye, crop, to, depth, kind);
@@ -465,7 +470,7 @@ impl Renderer {
     fn load(&self, from: &Targets, view: &View, crop: [u32; 2], targets: &Targets, to: &Destination) {
         let carries = if targets.carries { targets.samples } else { 0 };
         let kind = Composite { carries, ..Composite::default() };
-        let whole = Some(Rectangle::whole(to.size));
+        let whole = Some(Region::whole(to.size));
         self.gl.within_tile(|| self.composite_as(from, view, Eye::Left, crop, to, whole, kind));
     }
 
@@ -477,7 +482,7 @@ impl Renderer {
         eye: Eye,
         crop: [u32; 2],
         to: &Destination,
-        depth: Option<Rectangle>,
+        depth: Option<Region>,
         kind: Composite,
     ) {
         // Outlines of an array's eye are in a picture of its own.
@@ -493,14 +498,10 @@ impl Renderer {
         }
         let plain = Composite { layer: layer.is_some(), ..kind };
         let offset = [0, 1].map(|i| (corner[i] + crop[i]) as i32 - to.origin[i] as i32);
-        let draw = |variant: Composite, image: Option<&DepthImage>, part: &Rectangle| {
+        let draw = |variant: Composite, image: Option<&DepthImage>, region: Region| {
             let Some((_, program)) = self.composite.iter().find(|(made, _)| *made == variant) else { return };
-            if part.size.contains(&0) {
-                return;
-            }
             let state = if image.is_some() { RasterState::SCREEN_DEPTH } else { RasterState::SCREEN };
             self.gl.set_raster_state(&state);
-            self.gl.set_viewport([0, 1].map(|i| to.origin[i] + part.origin[i]), part.size);
             let program = program.bind();
             match layer {
                 None => program.texture("color_map", 0, targets.picture().0),
@@ -519,25 +520,30 @@ impl Renderer {
                     .texture("bloom", 2, bloom.result().raw())
                     .set("bloom_strength", self.bloom_strength());
             }
-            self.gl.draw_screen();
+            for part in region.rectangles() {
+                self.gl.set_viewport([0, 1].map(|i| to.origin[i] + part.origin[i]), part.size);
+                self.gl.draw_screen();
+            }
         };
         let color = Image { size: to.size, ..targets.picture().1 };
         let mut pass = self.gl.pass("composite").read("color_map", color).write([to.image(Format::Rgba8)]);
         if let Some(bloom) = bloom {
             pass = pass.read("bloom", bloom.result());
         }
-        if let Some(part) = depth {
+        if let Some(region) = depth {
             let image = targets.depth(view.size, eye, crop).texture.image();
-            pass = pass.read("depth_map", Image { size: part.size, ..image });
+            for part in region.rectangles() {
+                pass = pass.read("depth_map", Image { size: part.size, ..image });
+            }
             // Tested by what is drawn over it, and lost.
             pass = pass.in_tile([to.image(SAMPLE_DEPTH)]);
         }
         pass.run(|| {
             self.gl.overwrite(to, 1, depth.is_some());
-            let Some(part) = depth else { return draw(plain, None, &Rectangle::whole(to.size)) };
+            let Some(region) = depth else { return draw(plain, None, Region::whole(to.size)) };
             let image = targets.depth(view.size, eye, crop);
-            draw(Composite { depth: Some(image.is_pair), ..plain }, Some(&image), &part);
-            part.around(to.size).iter().for_each(|part| draw(plain, None, part));
+            draw(Composite { depth: Some(image.is_pair), ..plain }, Some(&image), region);
+            draw(plain, None, region.rest());
         });
     }
 

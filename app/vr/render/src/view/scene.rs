@@ -8,7 +8,7 @@ use glam::{BVec3, Vec2, Vec3, Vec4};
 use super::cluster::{self, Batch, Cluster, Culler, VERTEX_ATTRIBUTES};
 use super::coverage;
 use super::moving::Moving;
-use super::rectangle::Rectangle;
+use super::rectangle::{Rectangle, Region};
 use super::uniforms::eye_to_clip;
 use yoro::eyes::{DepthRange, View};
 use yoro_assets::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
@@ -144,6 +144,8 @@ pub struct GpuScene {
     textures: Vec<Texture>,
     pub(super) clusters: Vec<Cluster>,
     pub(super) batches: Vec<Batch>,
+    /// Boxes that together contain all blended triangles that do not move.
+    blended_boxes: Vec<Bounds>,
 }
 
 /// The texture units that materials use.
@@ -165,7 +167,8 @@ impl GpuScene {
             if reached.is_empty() { still } else { still.including(reached.min).including(reached.max) };
         let triangle_count = model.triangle_count();
         let mut moving = Moving::take(gl, &mut model, motion)?;
-        let cluster::Clusters { mut clusters, mut batches, indices } = cluster::build(&model);
+        let cluster::Clusters { mut clusters, mut batches, blended: blended_boxes, indices } =
+            cluster::build(&model);
         if let Some(moving) = &mut moving {
             moving.append(&mut clusters, &mut batches);
         }
@@ -198,6 +201,7 @@ impl GpuScene {
             textures,
             clusters,
             batches,
+            blended_boxes,
         })
     }
 
@@ -263,31 +267,34 @@ impl GpuScene {
         self.blended().flat_map(|b| &self.clusters[b.clusters.clone()]).any(|c| culler.sees(&c.bounds))
     }
 
-    /// Returns the smallest rectangle of a view's pixels around all blended surfaces that may be visible; `None` if there
-    /// are none.
-    pub(crate) fn transparent_part(&self, view: &View) -> Option<Rectangle> {
+    /// Returns a region of a view around all blended surfaces that may be visible; `None` if there are none.
+    pub(crate) fn transparent_region(&self, view: &View) -> Option<Region> {
         let (culler, to_clip, eye) = (Culler::of_view(view), eye_to_clip(view), view.pose.position);
         let size = Vec2::from(view.size.map(|n| n as f32));
-        let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-        for cluster in self.blended().flat_map(|b| &self.clusters[b.clusters.clone()]) {
-            if !culler.sees(&cluster.bounds) {
-                continue;
-            }
-            let Bounds { min, max } = cluster.bounds;
-            for i in 0..8 {
+        let moving =
+            self.blended().filter(|batch| batch.moves).flat_map(|b| &self.clusters[b.clusters.clone()]);
+        let boxes = self.blended_boxes.iter().chain(moving.map(|cluster| &cluster.bounds));
+        let mut region = Region::none(view.size);
+        for &Bounds { min, max } in boxes.filter(|bounds| culler.sees(bounds)) {
+            let corners = (0..8).map(|i| {
                 let corner = Vec3::select(BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0), max, min);
-                let clip = to_clip * (corner - eye).extend(1.0);
+                to_clip * (corner - eye).extend(1.0)
+            });
+            let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+            for clip in corners {
                 if clip.w < view.depth.near {
-                    return Some(Rectangle::whole(view.size));
+                    return Some(Region::whole(view.size));
                 }
                 let pixel = (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * size;
                 (low, high) = (low.min(pixel), high.max(pixel));
             }
+            let first = low.floor().clamp(Vec2::ZERO, size).as_uvec2();
+            let end = high.ceil().clamp(Vec2::ZERO, size).as_uvec2();
+            if first.cmplt(end).all() {
+                region.add(Rectangle { origin: first.to_array(), size: (end - first).to_array() });
+            }
         }
-        let first = low.floor().clamp(Vec2::ZERO, size).as_uvec2();
-        let end = high.ceil().clamp(Vec2::ZERO, size).as_uvec2();
-        let is_empty = first.cmpge(end).any();
-        (!is_empty).then(|| Rectangle { origin: first.to_array(), size: (end - first).to_array() })
+        region.rectangles().next().is_some().then_some(region)
     }
 
     /// Returns the batches of blended triangles.
