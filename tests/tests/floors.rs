@@ -28,7 +28,7 @@ const LINES: [(&str, f64); 10] = [
     ("app/engines", 40.6),
     ("app/base", 10.8),
     ("app/vr", 29.3),
-    ("app/lab", 19.0),
+    ("app/lab", 18.3),
     ("app/program", 6.2),
     ("android", 4.7),
     ("scenes", 12.9),

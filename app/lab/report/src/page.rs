@@ -1,42 +1,55 @@
 //! The page: one template for all reports, which loads nothing from elsewhere.
 
+use anyhow::Context;
 use minijinja::value::Value;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
-use serde_json::json;
 
 use crate::palette::css_rules;
-use crate::pictures::{ENCODINGS, Encoding};
-use crate::{Block, Pictures, Report, ReportError, Section, Text, Tone};
+use crate::pictures::ENCODINGS;
+use crate::text::escaped;
+use crate::{Block, Picture, Report};
 
 /// The largest number of bytes of all pictures on a page.
 const PICTURE_BUDGET: usize = 14 << 20;
 
 /// Returns the page of a report.
-pub(crate) fn render(report: &Report) -> Result<String, ReportError> {
+pub(crate) fn render(report: &Report) -> anyhow::Result<String> {
     render_within(report, PICTURE_BUDGET)
 }
 
-fn render_within(report: &Report, budget: usize) -> Result<String, ReportError> {
-    let encoded = encode_pictures(report, budget)?;
-    let mut pictures = encoded.addresses.into_iter();
+fn render_within(report: &Report, budget: usize) -> anyhow::Result<String> {
+    let (addresses, picture_note) = encode_pictures(report, budget)?;
+    let mut addresses = addresses.into_iter();
     let mut anchors: Vec<String> = Vec::new();
-    let sections = report.sections.iter().map(|section| {
-        let anchor = section.anchor();
-        let before = anchors.iter().filter(|other| **other == anchor).count();
-        anchors.push(anchor.clone());
-        let anchor = if before > 0 { format!("{anchor}-{}", before + 1) } else { anchor };
-        Ok(context! {
-            anchor => anchor,
+    let mut sections = Vec::new();
+    for section in &report.sections {
+        let before = anchors.iter().filter(|other| **other == section.anchor()).count();
+        anchors.push(section.anchor());
+        let number = if before > 0 { format!("-{}", before + 1) } else { String::new() };
+        let blocks = section.blocks.iter().map(|block| {
+            Ok(match block {
+                Block::Text(text) => context! { text },
+                Block::Table(table) => context! { table },
+                Block::Plot(plot) => context! { plot => plot.to_page()? },
+                Block::Pictures(viewer) => {
+                    let size = viewer.pictures.first().map_or((1, 1), |first| first.image.dimensions());
+                    let addresses: Vec<String> = addresses.by_ref().take(viewer.pictures.len()).collect();
+                    context! { viewer, size, addresses }
+                }
+            })
+        });
+        sections.push(context! {
+            anchor => section.anchor() + &number,
             heading => section.heading,
             place => section.place,
-            blocks => blocks(section, &mut pictures)?,
-        })
-    });
+            blocks => blocks.collect::<anyhow::Result<Vec<_>>>()?,
+        });
+    }
     let page = context! {
         title => report.title,
-        summary => report.summary.iter().map(text).collect::<Vec<_>>(),
-        sections => sections.collect::<Result<Vec<_>, ReportError>>()?,
-        picture_note => encoded.note,
+        summary => report.summary,
+        sections,
+        picture_note,
         css => include_str!("page.css"),
         dark_plots => css_rules(),
         script => include_str!("page.js"),
@@ -47,108 +60,49 @@ fn render_within(report: &Report, budget: usize) -> Result<String, ReportError> 
     environment.set_lstrip_blocks(true);
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
     environment.add_filter("markup", |text: String| markup(&text));
-    environment.add_template("page", include_str!("page.html.j2"))?;
-    Ok(environment.get_template("page")?.render(page)?)
+    let html = environment.render_str(include_str!("page.html.j2"), page);
+    html.context("cannot fill in the report's template")
 }
 
-fn text(text: &Text) -> Value {
-    let class = match text.tone {
-        Tone::Plain => "plain",
-        Tone::Quiet => "quiet",
-        Tone::Warning => "warning",
-    };
-    context! { kind => "text", class => class, text => text.text }
-}
-
-/// Returns the blocks of a section. Plots that follow each other are one block, side by side.
-fn blocks(
-    section: &Section,
-    pictures: &mut impl Iterator<Item = Vec<String>>,
-) -> Result<Vec<Value>, ReportError> {
-    let mut blocks = Vec::new();
-    let mut plots = Vec::new();
-    for block in &section.blocks {
-        if let Block::Plot(plot) = block {
-            plots.push(plot.to_page()?);
-            continue;
-        }
-        if !plots.is_empty() {
-            blocks.push(context! { kind => "plots", plots => std::mem::take(&mut plots) });
-        }
-        blocks.push(match block {
-            Block::Text(of) => text(of),
-            Block::Table(table) => context! { kind => "table", table => table },
-            Block::Pictures(of) => viewer(of, pictures.next().unwrap_or_default()),
-            Block::Plot(_) => continue,
-        });
-    }
-    if !plots.is_empty() {
-        blocks.push(context! { kind => "plots", plots => plots });
-    }
-    Ok(blocks)
-}
-
-fn viewer(of: &Pictures, addresses: Vec<String>) -> Value {
-    let (width, height) = of.pictures.first().map_or((1, 1), |first| first.image.dimensions());
-    let pictures = of.pictures.iter().zip(addresses).map(
-        |(picture, address)| json!({ "label": picture.label, "caption": picture.caption, "address": address }),
-    );
-    context! {
-        kind => "pictures",
-        title => of.title,
-        note => of.note,
-        width => width,
-        height => height,
-        other => of.other_eye.map(|other| other.picture),
-        other_is_left => of.other_eye.is_some_and(|other| other.is_left),
-        pictures => pictures.collect::<Vec<_>>(),
-    }
-}
-
-/// The pictures of a page as addresses, for each of its blocks of pictures.
-struct Encoded {
-    addresses: Vec<Vec<String>>,
-    /// A sentence about how they were encoded; empty if there are none.
-    note: String,
-}
-
-fn encode_pictures(report: &Report, budget: usize) -> Result<Encoded, ReportError> {
-    let all = report.sections.iter().flat_map(|section| &section.blocks).filter_map(|block| match block {
-        Block::Pictures(pictures) => Some(pictures),
-        _ => None,
+/// Returns the addresses of all pictures in the order of the page, and a sentence about how they were encoded, which is
+/// empty if there are none.
+fn encode_pictures(report: &Report, budget: usize) -> anyhow::Result<(Vec<String>, String)> {
+    let blocks = report.sections.iter().flat_map(|section| &section.blocks);
+    let pictures = blocks.flat_map(|block| match block {
+        Block::Pictures(of) => &of.pictures[..],
+        _ => &[],
     });
-    let all: Vec<&Pictures> = all.collect();
-    if all.is_empty() {
-        return Ok(Encoded { addresses: Vec::new(), note: String::new() });
-    }
-    let encode = |encoding: Encoding| -> image::ImageResult<Encoded> {
-        let addresses = all.iter().map(|of| of.pictures.iter().map(|p| p.data_uri(encoding)).collect());
-        Ok(Encoded { addresses: addresses.collect::<Result<_, _>>()?, note: encoding.note() })
-    };
-    let (last, others) = ENCODINGS.split_last().expect("there are encodings");
-    for encoding in others {
-        let encoded = encode(*encoding)?;
-        if encoded.addresses.iter().flatten().map(String::len).sum::<usize>() <= budget {
-            return Ok(encoded);
+    let pictures: Vec<&Picture> = pictures.collect();
+    let (mut addresses, mut note) = (Vec::new(), String::new());
+    for (quality, halvings) in ENCODINGS {
+        let encoded = pictures.iter().map(|picture| picture.data_uri(quality, halvings));
+        addresses = encoded.collect::<Result<_, _>>().context("cannot encode a picture of the report")?;
+        let size = if halvings > 0 {
+            format!(", shrunk to 1/{} of their size", 1 << halvings)
+        } else {
+            String::new()
+        };
+        note = format!(
+            "Pictures on this page are JPEG, quality {quality}{size}; error maps are shrunk to half. All figures were \
+             measured on the images as rendered."
+        );
+        if addresses.iter().map(String::len).sum::<usize>() <= budget {
+            break;
         }
     }
-    Ok(encode(*last)?)
+    Ok((addresses, if pictures.is_empty() { String::new() } else { note }))
 }
 
 /// Returns a text as HTML: `**` encloses what is important, a backquote what a computer reads.
 fn markup(text: &str) -> Value {
-    let escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    let mut html = String::new();
-    for (i, code) in escaped.split('`').enumerate() {
-        if i % 2 == 1 {
-            html += &format!("<code>{code}</code>");
-            continue;
-        }
-        for (i, part) in code.split("**").enumerate() {
-            html += &if i % 2 == 1 { format!("<b>{part}</b>") } else { part.to_owned() };
-        }
-    }
-    Value::from_safe_string(html)
+    let bold = |text: &str| enclosed(text, "**", "b", str::to_owned);
+    Value::from_safe_string(enclosed(&escaped(text), "`", "code", bold))
+}
+
+/// Returns a text with a tag around every second part between two marks.
+fn enclosed(text: &str, mark: &str, tag: &str, others: impl Fn(&str) -> String) -> String {
+    let parts = text.split(mark).enumerate();
+    parts.map(|(i, part)| if i % 2 == 1 { format!("<{tag}>{part}</{tag}>") } else { others(part) }).collect()
 }
 
 #[cfg(test)]
@@ -156,7 +110,7 @@ mod tests {
     use image::RgbImage;
 
     use super::*;
-    use crate::{Axis, Cell, Entry, OtherEye, Picture, Plot, Table};
+    use crate::{Axis, Cell, Entry, OtherEye, Pictures, Plot, Section, Table, Text};
 
     fn report() -> Report {
         let mut section = Section::new("A \"café\" & <b>", "See `a <c>`, **not** less.");
@@ -189,26 +143,12 @@ mod tests {
     #[test]
     fn the_page_is_escaped_and_needs_nothing_from_elsewhere() {
         let html = report().to_html().unwrap();
-        for foreign in [
-            "<b>\"",
-            "<one>",
-            "<title>\"",
-            "<c>",
-            "https://",
-            "<link",
-            "url(",
-            "@import",
-            " src=\"/",
-            "<script src",
-        ] {
+        let foreign = "<b>\"|<one>|<title>\"|<c>|https://|<link|url(|@import| src=\"/|<script src";
+        for foreign in foreign.split('|') {
             assert!(!html.contains(foreign), "{foreign}");
         }
         assert!(html.contains("See <code>a &lt;c&gt;</code>, <b>not</b> less."));
-        assert_eq!(
-            html.matches("</script>").count(),
-            4 + 1,
-            "a row named like the end of a script ends none"
-        );
+        assert_eq!(html.matches("</script>").count(), 4 + 1, "a row's name ends no script");
         assert!(html.contains("id=\"a-café-b\"") && html.contains("id=\"a-café-b-2\""));
         assert_eq!((html.matches("class=\"plots\"").count(), html.matches("<figure").count()), (2, 4));
         assert_eq!(html.matches("src=\"data:image/jpeg;base64,").count(), 4);

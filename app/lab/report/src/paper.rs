@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 /// The figures.
 pub static PAPER: LazyLock<Paper> =
@@ -38,12 +38,12 @@ pub struct Paper {
     pub patchers: BTreeMap<String, [f64; 3]>,
     /// The devices.
     pub devices: Vec<PaperDevice>,
-    /// The questions of the user study.
-    pub study: Vec<PaperQuestion>,
+    /// The 95 % interval of the difference from conventional rendering by each question of the user study.
+    pub study: BTreeMap<String, [f64; 2]>,
 }
 
 /// The paper's figures for one of its scenes. An array of three has those of [`SYSTEMS`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Deserialize)]
 pub struct PaperScene {
     /// The scene's name in the paper.
     #[serde(default)]
@@ -76,7 +76,7 @@ impl PaperScene {
 }
 
 /// One of the paper's devices, and YORO's change over conventional rendering in percent.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Debug, Deserialize)]
 pub struct PaperDevice {
     /// The device's name in the paper.
     pub name: String,
@@ -92,15 +92,6 @@ pub struct PaperDevice {
     pub memory: f64,
 }
 
-/// A question of the paper's study.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct PaperQuestion {
-    /// The question's name.
-    pub name: String,
-    /// The 95 % interval of the difference from conventional rendering.
-    pub interval: [f64; 2],
-}
-
 /// Returns the paper's name for the system that a method here corresponds to.
 pub fn system(method: &str) -> &'static str {
     match method {
@@ -112,29 +103,19 @@ pub fn system(method: &str) -> &'static str {
     }
 }
 
-/// Returns the paper's scene with this name, ignoring case, spaces and punctuation.
+/// Returns the paper's scene with this name.
 pub fn find(name: &str) -> Option<&'static PaperScene> {
-    let plain = |name: &str| -> String {
-        name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-    };
-    PAPER.scenes.iter().find(|scene| plain(&scene.name) == plain(name))
+    PAPER.scenes.iter().find(|scene| scene.name == name)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn scenes_are_found_by_name() {
-        assert_eq!(find("Lost Empire").unwrap().psnr, 39.25);
-        assert_eq!(find("unity-chan").unwrap().name, "UnityChan");
-        assert_eq!(find("Teapot"), None);
-    }
-
     /// Catches typing errors: the figures give the means that the paper's text has.
     #[test]
     fn the_figures_give_the_papers_own_summaries() {
-        let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
+        let mean = |values: Vec<f64>| crate::stats::mean(values).unwrap();
         let near = |ours: f64, papers: f64, within: f64| {
             assert!((ours - papers).abs() < within, "{ours} is not {papers}");
         };

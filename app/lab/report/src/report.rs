@@ -1,10 +1,12 @@
 //! A report: sections of text, tables, plots and pictures, as a page and as Markdown.
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 use crate::text::slug;
-use crate::{Pictures, Plot, ReportError, Table, page};
+use crate::{Pictures, Plot, Table, page};
 
 /// A report. It is written as one page that loads nothing from elsewhere, and as Markdown without plots and pictures.
 #[derive(Clone, Debug, Default)]
@@ -42,7 +44,8 @@ pub enum Block {
 }
 
 /// How much attention a paragraph asks for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Tone {
     /// As much as any other.
     #[default]
@@ -54,7 +57,7 @@ pub enum Tone {
 }
 
 /// A paragraph, in which `**` encloses what is important and a backquote what a computer reads.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Text {
     /// The text.
     pub text: String,
@@ -145,10 +148,8 @@ impl Section {
 
     /// Returns the heading, with the place in parentheses if there is one.
     pub fn full_heading(&self) -> String {
-        if self.place.is_empty() {
-            return self.heading.clone();
-        }
-        format!("{} ({})", self.heading, self.place)
+        let Section { heading, place, .. } = self;
+        if place.is_empty() { heading.clone() } else { format!("{heading} ({place})") }
     }
 
     /// Returns the name of the section's anchor on the page.
@@ -161,23 +162,22 @@ impl Report {
     /// Returns the page.
     ///
     /// # Errors
-    /// [`ReportError`] if a plot or a picture cannot be drawn.
-    pub fn to_html(&self) -> Result<String, ReportError> {
+    /// One sentence if a picture cannot be encoded.
+    pub fn to_html(&self) -> anyhow::Result<String> {
         page::render(self)
     }
 
     /// Returns all texts and tables as Markdown.
     pub fn to_markdown(&self) -> String {
         let mut out = format!("# {}\n", self.title);
-        for text in &self.summary {
-            let _ = write!(out, "\n{}\n", text.markdown());
-        }
+        let mut paragraph = |text: &str| out += &format!("\n{text}\n");
+        self.summary.iter().for_each(|text| paragraph(&text.markdown()));
         for section in &self.sections {
-            let _ = write!(out, "\n## {}\n", section.full_heading().replace('<', "&lt;"));
+            paragraph(&format!("## {}", section.full_heading().replace('<', "&lt;")));
             for block in &section.blocks {
                 match block {
-                    Block::Text(text) => drop(write!(out, "\n{}\n", text.markdown())),
-                    Block::Table(table) => drop(write!(out, "\n{}", table.markdown())),
+                    Block::Text(text) => paragraph(&text.markdown()),
+                    Block::Table(table) => paragraph(table.markdown().trim_end()),
                     Block::Plot(_) | Block::Pictures(_) => {}
                 }
             }
@@ -188,16 +188,16 @@ impl Report {
     /// Writes `NAME.html` and `NAME.md` into `folder`, and `NAME.json` if there is a text for it.
     ///
     /// # Errors
-    /// [`ReportError`]. All files are made before the first one is written.
-    pub fn write(&self, folder: &Path, name: &str, json: Option<&str>) -> Result<ReportFiles, ReportError> {
-        let (html, markdown) = (self.to_html()?, self.to_markdown());
+    /// One sentence. All files are made before the first one is written.
+    pub fn write(&self, folder: &Path, name: &str, json: Option<&str>) -> anyhow::Result<ReportFiles> {
+        let html = self.to_html()?;
         let write = |ending: &str, text: &str| {
             let path = folder.join(format!("{name}.{ending}"));
             yoro_files::write(&path, text.as_bytes()).map(|()| path)
         };
         // The page comes last, since it is what people open.
         let json = json.map(|json| write("json", json)).transpose()?;
-        let markdown = write("md", &markdown)?;
+        let markdown = write("md", &self.to_markdown())?;
         Ok(ReportFiles { page: write("html", &html)?, markdown, json })
     }
 }

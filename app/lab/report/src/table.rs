@@ -1,7 +1,5 @@
 //! Tables for the page and as Markdown.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 
 /// The kind of a cell, which decides how it looks on the page.
@@ -33,34 +31,34 @@ pub struct Cell {
 }
 
 impl Cell {
+    fn new(kind: Kind, text: impl Into<String>) -> Cell {
+        Cell { text: text.into(), kind, span: 1 }
+    }
+
     /// Returns a cell with a name or a fact.
     pub fn plain(text: impl Into<String>) -> Cell {
-        Cell { text: text.into(), kind: Kind::Plain, span: 1 }
+        Cell::new(Kind::Plain, text)
     }
 
     /// Returns a cell with a text that may take several lines.
     pub fn long(text: impl Into<String>) -> Cell {
-        Cell { text: text.into(), kind: Kind::Long, span: 1 }
+        Cell::new(Kind::Long, text)
     }
 
     /// Returns a cell with one of our figures, or a dash if it is `None`.
     pub fn ours(value: Option<impl Into<String>>) -> Cell {
-        Cell { text: or_dash(value), kind: Kind::Ours, span: 1 }
+        Cell::new(Kind::Ours, value.map_or("–".into(), Into::into))
     }
 
     /// Returns a cell with a baseline, or a dash if it is `None`.
     pub fn base(value: Option<impl Into<String>>) -> Cell {
-        Cell { text: or_dash(value), kind: Kind::Base, span: 1 }
+        Cell::new(Kind::Base, value.map_or("–".into(), Into::into))
     }
 
     /// Returns a cell with one of the paper's figures, or a dash if it is `None`.
     pub fn paper(value: Option<impl Into<String>>) -> Cell {
-        Cell { text: or_dash(value), kind: Kind::Paper, span: 1 }
+        Cell::new(Kind::Paper, value.map_or("–".into(), Into::into))
     }
-}
-
-fn or_dash(value: Option<impl Into<String>>) -> String {
-    value.map_or_else(|| "–".to_owned(), Into::into)
 }
 
 /// The head of a column.
@@ -97,10 +95,8 @@ pub struct Table {
 impl Table {
     /// Returns a table without rows. A column name that starts with `<` marks a column of text.
     pub fn new(title: impl Into<String>, columns: &[impl AsRef<str>]) -> Table {
-        let column = |name: &str| match name.strip_prefix('<') {
-            Some(name) => Column { name: name.into(), left: true },
-            None => Column { name: name.into(), left: false },
-        };
+        let column =
+            |name: &str| Column { name: name.trim_start_matches('<').into(), left: name.starts_with('<') };
         let columns = columns.iter().map(|name| column(name.as_ref())).collect();
         Table { title: title.into(), columns, lines: Vec::new(), note: String::new() }
     }
@@ -118,8 +114,7 @@ impl Table {
     /// Puts a rule above each row whose first cell differs from that of the row before.
     pub fn group(&mut self) {
         for i in 0..self.lines.len() {
-            let is_same = i > 0 && self.lines[i - 1].cells[0] == self.lines[i].cells[0];
-            self.lines[i].first = !is_same;
+            self.lines[i].first = i == 0 || self.lines[i - 1].cells[0] != self.lines[i].cells[0];
         }
     }
 
@@ -133,29 +128,21 @@ impl Table {
     /// Returns the table in GitHub's Markdown.
     pub fn markdown(&self) -> String {
         let escape = |text: &str| text.replace('|', "\\|").replace(['\n', '\r'], " ").replace('<', "&lt;");
-        let mut out = format!("**{}**\n\n|", escape(&self.title));
-        for column in &self.columns {
-            let _ = write!(out, " {} |", escape(&column.name));
-        }
-        out.push_str("\n|");
-        for column in &self.columns {
-            out.push_str(if column.left { "---|" } else { "---:|" });
-        }
-        out.push('\n');
+        let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let mut out = format!("**{}**\n\n", escape(&self.title));
+        out += &row(self.columns.iter().map(|column| escape(&column.name)).collect());
+        let rules = self.columns.iter().map(|column| if column.left { "---|" } else { "---:|" });
+        out += &format!("|{}\n", rules.collect::<String>());
         for line in &self.lines {
-            out.push('|');
-            for cell in &line.cells {
-                let text = match cell.kind {
-                    Kind::Paper if cell.text != "–" => format!("*{}*", escape(&cell.text)),
-                    _ => escape(&cell.text),
-                };
-                let _ = write!(out, " {text} |");
-                out.push_str(&" |".repeat(cell.span.saturating_sub(1)));
-            }
-            out.push('\n');
+            let cell = |cell: &Cell| {
+                let text = escape(&cell.text);
+                let text = if cell.kind == Kind::Paper && text != "–" { format!("*{text}*") } else { text };
+                text + &" |".repeat(cell.span.saturating_sub(1))
+            };
+            out += &row(line.cells.iter().map(cell).collect());
         }
         if !self.note.is_empty() {
-            let _ = writeln!(out, "\n{}", escape(&self.note));
+            out += &format!("\n{}\n", escape(&self.note));
         }
         out
     }

@@ -287,10 +287,7 @@ const GPU_MINUTES: u64 = 8;
 
 /// Accepts the names of suites, with a line of help for each.
 fn suite_names() -> PossibleValuesParser {
-    let each = EXPERIMENTS.into_iter().map(|each| {
-        let [name, help] = each.name_and_help();
-        PossibleValue::new(name).help(help)
-    });
+    let each = EXPERIMENTS.into_iter().map(|each| PossibleValue::new(each.name()).help(each.about()));
     let gpu =
         PossibleValue::new(GPU).help("What a GPU gains, in eight minutes: most of them, from one viewpoint");
     let all = PossibleValue::new(ALL).help("All of them, one after the other");

@@ -44,13 +44,11 @@ pub use views::check_path;
 
 /// A suite of `yoro bench`: what it measures, and how its results are shown.
 pub trait Experiment: Sync {
-    /// Returns the name on the command line and in files, and what it measures, in a line.
-    fn name_and_help(&self) -> [&'static str; 2];
+    /// Returns the name on the command line and in files.
+    fn name(&self) -> &'static str;
 
-    /// Returns the name.
-    fn name(&self) -> &'static str {
-        self.name_and_help()[0]
-    }
+    /// Returns what it measures, in a line.
+    fn about(&self) -> &'static str;
 
     /// Returns the settings in the order of measurement: those that share a scene follow each other. `object` is the
     /// object of the suites `distance` and `complexity`.
@@ -77,6 +75,6 @@ pub trait Experiment: Sync {
 
     /// Returns the sections of the report: by default a table of all means.
     fn sections(&self, suite: &SuiteData) -> Vec<Section> {
-        vec![tables::everything(self.name_and_help(), suite)]
+        vec![tables::everything(self.about(), suite)]
     }
 }

@@ -4,13 +4,14 @@ use std::path::Path;
 
 use anyhow::{anyhow, bail};
 use yoro::eyes::Eye;
-use yoro_report::{Pictures, Report, ReportError, ReportFiles, Section, Text};
+use yoro_report::{Pictures, Report, ReportFiles, Section, Text};
 
 use super::pictures::{QUALITY_METHOD, Viewpoint, picture_folder};
 use super::record::{Results, metric};
 use super::results::{self, CONVENTIONAL, MONO, SuiteData};
 use super::suites::EXPERIMENTS;
 use super::tables;
+use crate::machine::{Machine, Parameter};
 
 /// The heading of the page.
 const TITLE: &str = "yoro: every method side by side";
@@ -39,12 +40,8 @@ impl BenchReport {
         if let Some(empty) = files.iter().find(|file| file.measurements().next().is_none()) {
             bail!("{} holds no finished round: let yoro bench finish one, then report", empty.path.display());
         }
-        let suites = results::suites(&files);
-        let mut pictures = Vec::new();
-        for file in &files {
-            pictures.extend(load_pictures(file)?);
-        }
-        Ok(BenchReport { files, suites, pictures })
+        let pictures: Vec<Vec<Pictures>> = files.iter().map(load_pictures).collect::<Result<_, _>>()?;
+        Ok(BenchReport { suites: results::suites(&files), files, pictures: pictures.concat() })
     }
 
     /// Returns the sections of all suites in the order of [`EXPERIMENTS`], then those of suites that are not known, the
@@ -53,15 +50,13 @@ impl BenchReport {
         let mut sections = Vec::new();
         for experiment in EXPERIMENTS {
             for suite in self.suites.iter().filter(|suite| suite.name == experiment.name()) {
-                sections.extend(
-                    experiment.sections(suite).into_iter().map(|section| self.finished(section, suite)),
-                );
+                let of_suite = experiment.sections(suite).into_iter();
+                sections.extend(of_suite.map(|section| self.finished(section, suite)));
             }
         }
         let is_known = |suite: &&SuiteData| EXPERIMENTS.iter().any(|known| known.name() == suite.name);
-        for suite in self.suites.iter().filter(|suite| !is_known(suite)) {
-            sections.push(self.finished(tables::everything([&suite.name, ""], suite), suite));
-        }
+        let unknown = self.suites.iter().filter(|suite| !is_known(suite));
+        sections.extend(unknown.map(|suite| self.finished(tables::everything("", suite), suite)));
         let mut pictures = Section::new("Pictures", QUALITY_METHOD);
         self.pictures.iter().for_each(|view| pictures.pictures(view.clone()));
         sections.push(pictures);
@@ -75,8 +70,8 @@ impl BenchReport {
     /// Writes `report.html` and `report.md` into a folder.
     ///
     /// # Errors
-    /// [`ReportError`]; existing files are then unchanged.
-    pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
+    /// One sentence; existing files are then unchanged.
+    pub fn write(&self, folder: &Path) -> anyhow::Result<ReportFiles> {
         self.report().write(folder, "report", None)
     }
 
@@ -95,17 +90,14 @@ impl BenchReport {
 
     /// Returns the GL renderer if several machines measured the same suite, with its version if only that differs.
     fn place(&self, suite: &SuiteData) -> Option<String> {
-        let gl = |suite: &SuiteData| {
-            let machine = &suite.header.machine;
-            (machine.gl_renderer.clone(), machine.gl_version.clone())
-        };
-        let (renderer, version) = gl(suite);
-        let others: Vec<_> = self.suites.iter().filter(|other| other.name == suite.name).map(gl).collect();
-        let another_version = others.iter().any(|(r, v)| *r == renderer && *v != version);
-        match (others.len() > 1, another_version) {
+        let Machine { gl_renderer, gl_version, .. } = &suite.header.machine;
+        let others = || self.suites.iter().filter(|other| other.name == suite.name);
+        let machines = others().map(|other| &other.header.machine);
+        let mut versions = machines.filter(|m| m.gl_renderer == *gl_renderer).map(|m| &m.gl_version);
+        match (others().count() > 1, versions.any(|version| version != gl_version)) {
             (false, _) => None,
-            (true, false) => Some(renderer),
-            (true, true) => Some(format!("{renderer}, {version}")),
+            (true, false) => Some(gl_renderer.clone()),
+            (true, true) => Some(format!("{gl_renderer}, {gl_version}")),
         }
     }
 
@@ -115,14 +107,11 @@ impl BenchReport {
         section.text(QUALITY_METHOD);
         for Results { path, header, .. } in &self.files {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let list = |facts: &[(&str, &str)]| {
-                facts.iter().map(|(name, value)| format!("{name}: {value}")).collect::<Vec<_>>().join("; ")
-            };
-            let machine = &header.machine;
-            let parameters: Vec<(&str, &str)> =
-                header.parameters.iter().map(|p| (p.name.as_str(), p.value.as_str())).collect();
-            let machine = [("GL", machine.gl_version.as_str()), ("OS", &machine.os), ("yoro", &machine.yoro)];
-            section.text(Text::quiet(format!("`{name}`: {}; {}.", list(&machine), list(&parameters))));
+            let Machine { gl_version, os, yoro, .. } = &header.machine;
+            let parameters = header.parameters.iter().map(|p| format!("{}: {}", p.name, p.value));
+            let parameters = parameters.collect::<Vec<_>>().join("; ");
+            let machine = format!("GL: {gl_version}; OS: {os}; yoro: {yoro}");
+            section.text(Text::quiet(format!("`{name}`: {machine}; {parameters}.")));
         }
         section
     }
@@ -149,11 +138,8 @@ fn answers(suite: &SuiteData) -> Vec<String> {
 /// Loads the pictures beside a file, in the order of its settings.
 fn load_pictures(file: &Results) -> anyhow::Result<Vec<Pictures>> {
     let mut all = Vec::new();
-    let dominant_eye = file.header.parameters.iter().find(|parameter| parameter.name == "dominant eye");
-    let dominant_eye = match dominant_eye {
-        Some(parameter) if parameter.value == Eye::Left.name() => Eye::Left,
-        _ => Eye::Right,
-    };
+    let is_left = |p: &Parameter| p.name == "dominant eye" && p.value == Eye::Left.name();
+    let dominant_eye = if file.header.parameters.iter().any(is_left) { Eye::Left } else { Eye::Right };
     for facts in file.scenes() {
         let folder = picture_folder(&file.path, &facts.conditions);
         // Not every suite's pictures include the dominant eye.
@@ -169,17 +155,16 @@ fn load_pictures(file: &Results) -> anyhow::Result<Vec<Pictures>> {
                 views.push((name.to_owned(), load(name)?));
             }
         }
-        let frame = facts.frames.first().cloned().unwrap_or_else(|| "first frame".into());
-        let (dominant, truth) = (load("dominant")?, load("truth")?);
         let setting = &facts.conditions;
         let point = setting.label.clone().or(setting.point.map(|point| point.to_string()));
-        let note = point.map_or_else(|| setting.suite.clone(), |point| format!("{}, {point}", setting.suite));
-        let viewpoint = Viewpoint { dominant_eye, dominant, truth, views };
-        let shown = viewpoint.shown(setting.scene.clone(), format!("{note}, {frame}"));
+        let frame = facts.frames.first().cloned().unwrap_or_else(|| "first frame".into());
+        let note = [Some(setting.suite.clone()), point, Some(frame)].into_iter().flatten();
+        let viewpoint = Viewpoint { dominant_eye, dominant: load("dominant")?, truth: load("truth")?, views };
+        let shown = viewpoint.shown(setting.scene.clone(), note.collect::<Vec<_>>().join(", "));
+        let folder = folder.display();
         all.push(shown.map_err(|error| {
             anyhow!(
-                "the pictures in {} do not go together ({error}): measure again, or remove the folder",
-                folder.display()
+                "the pictures in {folder} do not go together ({error}): measure again, or remove the folder"
             )
         })?);
     }

@@ -1,6 +1,6 @@
 //! Results with known figures, checked in tables, plots and the page.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use image::{Rgb, RgbImage};
 
@@ -44,10 +44,8 @@ fn append<'a>(
     rounds: u32,
     figures: impl Fn(u32) -> Vec<Figures<'a>>,
 ) {
-    let (stands_for, triangles) = SCENES
-        .iter()
-        .find(|(scene, ..)| *scene == conditions.scene)
-        .map_or(("", 117_000), |(_, stands_for, triangles)| (*stands_for, *triangles));
+    let scene = SCENES.iter().find(|(scene, ..)| *scene == conditions.scene);
+    let (stands_for, triangles) = scene.map_or(("", 117_000), |(_, paper, triangles)| (*paper, *triangles));
     let facts = Record::Scene(SceneFacts {
         conditions: conditions.clone(),
         stands_for: stands_for.into(),
@@ -61,9 +59,8 @@ fn append<'a>(
         contender: "multiview".into(),
         reason: "this driver has no GL_OVR_multiview2".into(),
     });
-    let mut first = vec![facts, refused];
+    let mut records = vec![facts, refused];
     for round in 0..rounds {
-        let mut records = std::mem::take(&mut first);
         for (contender, values) in figures(round) {
             let (conditions, contender) = (conditions.clone(), contender.into());
             let mut measurement = Measurement { conditions, contender, round, values: Default::default() };
@@ -72,7 +69,8 @@ fn append<'a>(
             }
             records.push(Record::Measurement(measurement));
         }
-        writer.append(records, RoundEnd { conditions: conditions.clone(), round }).unwrap();
+        let end = RoundEnd { conditions: conditions.clone(), round };
+        writer.append(std::mem::take(&mut records), end).unwrap();
     }
 }
 
@@ -190,19 +188,23 @@ fn report(dir: &Path) -> BenchReport {
     BenchReport::new(vec![Results::read(&path).unwrap()]).unwrap()
 }
 
-/// Returns the cells of the first row that starts with `row` in the Markdown table below a heading.
-fn row(markdown: &str, table: &str, row: &str) -> Vec<String> {
+fn markdown() -> String {
+    let dir = tempfile::tempdir().unwrap();
+    report(dir.path()).report().to_markdown()
+}
+
+/// Returns the cells of the first row with a cell `named` in the Markdown table below a heading.
+fn row(markdown: &str, table: &str, named: &str) -> Vec<String> {
     let start = markdown.find(table).unwrap_or_else(|| panic!("no table {table} in {markdown}"));
     let mut lines = markdown[start..].lines().map(|line| line.replace("\\|", "/"));
-    let line = lines.find(|line| line.starts_with(&format!("| {row} ")));
-    let line = line.unwrap_or_else(|| panic!("no row {row} below {table}: {}", &markdown[start..]));
+    let line = lines.find(|line| line.contains(&format!("| {named} |")));
+    let line = line.unwrap_or_else(|| panic!("no row {named} below {table}: {}", &markdown[start..]));
     line.split('|').map(|cell| cell.trim().to_owned()).filter(|cell| !cell.is_empty()).collect()
 }
 
 #[test]
 fn ratios_pair_frames_of_the_same_round() {
-    let dir = tempfile::tempdir().unwrap();
-    let markdown = report(dir.path()).report().to_markdown();
+    let markdown = markdown();
     let cells = row(&markdown, "**Frame time over two full renders**", "atrium / columns");
     assert_eq!(
         cells[1..7],
@@ -210,15 +212,13 @@ fn ratios_pair_frames_of_the_same_round() {
         "{cells:?}"
     );
     assert_eq!(cells[7], "*Sponza: 0.46*");
-    let start = markdown.find("**Frame times in full**").unwrap();
-    let line = markdown[start..].lines().find(|l| l.contains("| yoro-gather |")).unwrap();
-    assert!(line.contains("| 0.550 | 0.550 – 0.550 | – |"), "{line}");
+    let cells = row(&markdown, "**Frame times in full**", "yoro-gather");
+    assert_eq!(cells[8..], ["0.550", "0.550 – 0.550", "–"], "{cells:?}");
 }
 
 #[test]
 fn slopes_are_least_squares_beside_the_papers() {
-    let dir = tempfile::tempdir().unwrap();
-    let markdown = report(dir.path()).report().to_markdown();
+    let markdown = markdown();
     let cells = row(&markdown, "**Slope and ratio**", "yoro-paper");
     assert_eq!(cells[..5], ["yoro-paper", "24.00", "0.00", "0.600", "0.60 (0.60–0.60)"], "{cells:?}");
     // The expected values come from NumPy's polyfit of the paper's nine points.
@@ -228,8 +228,7 @@ fn slopes_are_least_squares_beside_the_papers() {
 
 #[test]
 fn quality_has_the_same_image_and_the_paper_as_baselines() {
-    let dir = tempfile::tempdir().unwrap();
-    let markdown = report(dir.path()).report().to_markdown();
+    let markdown = markdown();
     let cells = row(&markdown, "**PSNR in dB/SSIM/FLIP**", "street &lt;b>&\"café\"&lt;/b>");
     // 30 dB times 1.5 - share, plus 1 dB in the mean of two frames.
     assert_eq!(
@@ -250,13 +249,10 @@ fn quality_has_the_same_image_and_the_paper_as_baselines() {
 
 #[test]
 fn bits_are_compared_at_equal_quantizers_and_with_the_papers() {
-    let dir = tempfile::tempdir().unwrap();
-    let markdown = report(dir.path()).report().to_markdown();
+    let markdown = markdown();
     let table = "**Bit rate in kbit/s, and bits saved against both eyes at the same quantizer**";
-    let cells = row(&markdown, table, "two eyes, rotation, QP 20");
-    assert_eq!(cells[1..], ["8000", "8000"], "{cells:?}");
-    let cells = row(&markdown, table, "one eye and depth, QP 32");
-    assert_eq!(cells[1..], ["1400, 30.0 %", "1400, 30.0 %"], "{cells:?}");
+    assert_eq!(row(&markdown, table, "two eyes, rotation, QP 20")[1..], ["8000", "8000"]);
+    assert_eq!(row(&markdown, table, "one eye and depth, QP 32")[1..], ["1400, 30.0 %", "1400, 30.0 %"]);
     let note = "Mean difference of one eye and depth here -35.0 %; the paper's -39.6 %.";
     assert!(markdown.contains(note), "{markdown}");
 }
@@ -266,23 +262,9 @@ fn every_section_has_its_place_and_no_row_is_silently_empty() {
     let dir = tempfile::tempdir().unwrap();
     let report = report(dir.path()).report();
     let headings: Vec<&str> = report.sections.iter().map(|section| section.heading.as_str()).collect();
-    let expected = [
-        "Frame time",
-        "Image quality",
-        "Overhead",
-        "Complexity",
-        "Shading styles",
-        "Distance between the eyes",
-        "Distance of the object",
-        "Patchers",
-        "Few lights",
-        "Flicker",
-        "Streaming",
-        "New suite",
-        "Pictures",
-        "How it was measured",
-    ];
-    assert_eq!(headings, expected);
+    let expected = "Frame time, Image quality, Overhead, Complexity, Shading styles, Distance between the eyes, \
+        Distance of the object, Patchers, Few lights, Flicker, Streaming, New suite, Pictures, How it was measured";
+    assert_eq!(headings.join(", "), expected);
     for section in &report.sections {
         for table in section.tables() {
             for line in &table.lines {
@@ -313,35 +295,33 @@ fn every_section_has_its_place_and_no_row_is_silently_empty() {
 #[test]
 fn machines_stand_side_by_side_and_files_of_one_are_merged() {
     let dir = tempfile::tempdir().unwrap();
-    let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| dir.path().join(format!("{name}.jsonl")));
-    write_results(&a, &header("llvmpipe"));
-    write_results(&b, &header("a GPU"));
-    write_results(&c, &header("llvmpipe"));
+    let written = |name: &str, header: &Header| {
+        let path = dir.path().join(format!("{name}.jsonl"));
+        write_results(&path, header);
+        Results::read(&path).unwrap()
+    };
+    let [a, b, c] = [("a", "llvmpipe"), ("b", "a GPU"), ("c", "llvmpipe")]
+        .map(|(name, renderer)| written(name, &header(renderer)));
     let mut newer = header("llvmpipe");
     newer.machine.gl_version = "OpenGL ES 3.2 Mesa 25".into();
-    write_results(&d, &newer);
-    let read = |paths: &[&PathBuf]| {
-        BenchReport::new(paths.iter().map(|path| Results::read(path).unwrap()).collect()).unwrap()
-    };
-    let html = read(&[&a, &b]).report().to_html().unwrap();
+    let d = written("d", &newer);
+    let read = |files: [&Results; 2]| BenchReport::new(files.map(Results::clone).into()).unwrap().report();
+    let html = read([&a, &b]).to_html().unwrap();
     assert!(html.contains("id=\"complexity-llvmpipe\"") && html.contains("id=\"complexity-a-gpu\""));
-    let markdown = read(&[&a, &d]).report().to_markdown();
+    let markdown = read([&a, &d]).to_markdown();
     assert!(markdown.contains("(llvmpipe, OpenGL ES 3.2 Mesa)\n"));
     assert!(markdown.contains("(llvmpipe, OpenGL ES 3.2 Mesa 25)\n"));
-    let markdown = read(&[&a, &c]).report().to_markdown();
+    let markdown = read([&a, &c]).to_markdown();
     assert_eq!(markdown.matches("## Complexity").count(), 1);
-    let start = markdown.find("**Frame times in full**").unwrap();
-    let line = markdown[start..].lines().find(|l| l.contains("| yoro-gather |")).unwrap();
-    assert!(line.contains("| yoro-gather | 12 |"), "three rounds of two frames, twice: {line}");
+    let cells = row(&markdown, "**Frame times in full**", "yoro-gather");
+    assert_eq!(cells[2], "12", "three rounds of two frames, twice: {cells:?}");
     // The command of a part would measure a part.
-    let parts = ["1/2", "2/2"].map(|shard| {
-        let mut part = header("llvmpipe");
-        part.machine.command = format!("yoro bench complexity --shard {shard} --quick");
-        let path = dir.path().join(format!("{}.jsonl", &shard[..1]));
-        write_results(&path, &part);
-        path
+    let [one, two] = ["1", "2"].map(|part| {
+        let mut header = header("llvmpipe");
+        header.machine.command = format!("yoro bench complexity --shard {part}/2 --quick");
+        written(part, &header)
     });
-    let markdown = read(&[&parts[0], &parts[1]]).report().to_markdown();
+    let markdown = read([&one, &two]).to_markdown();
     assert!(markdown.contains("`yoro bench complexity --quick`") && !markdown.contains("--shard"));
 }
 

@@ -283,8 +283,8 @@ pub(super) fn metric_table(suite: &SuiteData, title: &str, contenders: &[&str]) 
 }
 
 /// Returns a section with the mean of every metric in every setting, for suites that say nothing more.
-pub(super) fn everything([name, about]: [&str; 2], suite: &SuiteData) -> Section {
-    let mut letters = name.chars();
+pub(super) fn everything(about: &str, suite: &SuiteData) -> Section {
+    let mut letters = suite.name.chars();
     let first = letters.next().into_iter().flat_map(char::to_uppercase);
     let heading: String = first.chain(letters.map(|c| if c == '-' { ' ' } else { c })).collect();
     let measured = suite.settings.iter().flat_map(|setting| &setting.contenders);

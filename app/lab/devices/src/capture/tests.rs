@@ -6,7 +6,7 @@ use super::sample::COLUMNS;
 use super::*;
 use yoro_settings::telemetry::{LINE_KEYS, Line};
 
-fn info() -> RunInfo {
+pub(crate) fn info() -> RunInfo {
     RunInfo {
         version: VERSION,
         device: DeviceInfo { serial: "S1".into(), simulated: true, ..DeviceInfo::default() },

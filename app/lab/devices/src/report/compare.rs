@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Device;
 use super::run::{Quantity, Run};
-use yoro_report::{BlockInterval, Interval, Sample, mean_of_blocks};
+use yoro_report::stats::{Sample, mean_of_blocks};
 
 /// The mean of a method in a scene over all runs that count.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -17,8 +17,6 @@ pub struct Mean {
     pub quantity: Quantity,
     #[serde(flatten)]
     pub sample: Sample,
-    /// Confidence interval of the mean, by Student's t over the repetitions. `None` for a single run.
-    pub interval: Option<Interval>,
 }
 
 /// The comparison of a method with the baseline, by pairs of runs of the same device, scene and repetition.
@@ -30,14 +28,23 @@ pub struct Difference {
     pub method: String,
     pub quantity: Quantity,
     pub pairs: usize,
+    /// The number of scenes that the pairs are of.
+    pub scenes: usize,
     /// Mean of the method over the pairs of each scene, then over the scenes.
     pub ours: f64,
     pub baseline: f64,
     /// Change in percent, from the geometric mean of the pairs' ratios. For quantities that are not compared by ratios,
     /// the mean difference in the quantity's unit.
     pub change: f64,
-    /// Confidence interval of the change. `None` if nothing was repeated.
-    pub interval: Option<BlockInterval>,
+    /// Ends of the change's interval. `None` if nothing was repeated.
+    pub interval: Option<[f64; 2]>,
+}
+
+impl Difference {
+    /// True if every scene was measured once, so that the interval rests on the scatter of the scenes.
+    pub fn rests_on_scenes(&self) -> bool {
+        self.pairs == self.scenes
+    }
 }
 
 /// Returns the means of all methods and scenes on a device.
@@ -45,20 +52,17 @@ pub fn means(runs: &[Run], device: &Device) -> Vec<Mean> {
     let mut means = Vec::new();
     for scene in &device.scenes {
         for method in &device.methods {
+            let of =
+                || device.runs(runs).filter(|run| run.info.scene == *scene && run.info.method == *method);
             for quantity in Quantity::ALL {
-                let of = runs.iter().filter(|r| r.device == device.name && r.scene == *scene);
-                let of = of.filter(|run| run.method == *method);
-                let values: Vec<f64> = of.filter_map(|run| run.values.get(&quantity).copied()).collect();
-                if let Some(sample) = Sample::of(&values) {
-                    means.push(Mean {
-                        device: device.name.clone(),
-                        scene: scene.clone(),
-                        method: method.clone(),
-                        quantity,
-                        sample,
-                        interval: sample.interval(),
-                    });
-                }
+                let values: Vec<f64> = of().filter_map(|run| run.values.get(&quantity).copied()).collect();
+                means.extend(Sample::of(&values).map(|sample| Mean {
+                    device: device.name.clone(),
+                    scene: scene.clone(),
+                    method: method.clone(),
+                    quantity,
+                    sample,
+                }));
             }
         }
     }
@@ -68,16 +72,15 @@ pub fn means(runs: &[Run], device: &Device) -> Vec<Mean> {
 /// What the two runs of a pair have in common.
 type Key<'a> = (usize, Option<&'a str>, &'a str, u32);
 
-fn key(run: &Run) -> Key<'_> {
-    (run.set, run.experiment.as_deref(), &run.scene, run.repetition)
+pub fn key(run: &Run) -> Key<'_> {
+    (run.set, run.info.experiment.as_deref(), &run.info.scene, run.info.repetition)
 }
 
 /// Returns the runs that have no run of the baseline to be paired with.
-pub fn without_partner<'a>(runs: &'a [Run], device: &Device, baseline: &str) -> Vec<&'a Run> {
-    let of =
-        || runs.iter().filter(|run| run.device == device.name && run.exclusions.iter().all(|e| e.power_only));
-    let partners: BTreeSet<Key> = of().filter(|run| run.method == baseline).map(key).collect();
-    of().filter(|run| run.method != baseline && !partners.contains(&key(run))).collect()
+pub fn without_partner<'a>(runs: &'a [Run], device: &'a Device, baseline: &str) -> Vec<&'a Run> {
+    let of = || device.runs(runs).filter(|run| run.counts(Quantity::Fps));
+    let partners: BTreeSet<Key> = of().filter(|run| run.info.method == baseline).map(key).collect();
+    of().filter(|run| run.info.method != baseline && !partners.contains(&key(run))).collect()
 }
 
 /// Compares all methods on a device with the baseline, for each scene and then over the scenes.
@@ -86,60 +89,42 @@ pub fn differences(runs: &[Run], device: &Device, baseline: &str) -> Vec<Differe
     for method in device.methods.iter().filter(|method| *method != baseline) {
         for quantity in Quantity::ALL {
             let values = |method: &str| -> BTreeMap<Key, f64> {
-                let of = runs.iter().filter(|run| run.device == device.name && run.method == method);
+                let of = device.runs(runs).filter(|run| run.info.method == method);
                 of.filter_map(|run| Some((key(run), *run.values.get(&quantity)?))).collect()
             };
             let (ours, theirs) = (values(method), values(baseline));
-            let pairs = |scene: &str| -> Vec<(f64, f64)> {
+            let pairs = |scene: &String| -> Vec<[f64; 2]> {
                 let of_scene = ours.iter().filter(|(key, _)| key.2 == scene);
-                of_scene.filter_map(|(key, value)| Some((*value, *theirs.get(key)?))).collect()
+                of_scene.filter_map(|(key, value)| Some([*value, *theirs.get(key)?])).collect()
             };
-            let scenes: Vec<(&String, Vec<(f64, f64)>)> = device
-                .scenes
-                .iter()
-                .map(|scene| (scene, pairs(scene)))
-                .filter(|(_, p)| !p.is_empty())
-                .collect();
-            let difference = |scene: Option<&String>, pairs: &[&Vec<(f64, f64)>]| {
-                let (change, interval) = change(quantity, pairs)?;
-                let mean = |side: fn(&(f64, f64)) -> f64| {
-                    let blocks: Vec<Vec<f64>> = pairs.iter().map(|p| p.iter().map(side).collect()).collect();
-                    mean_of_blocks(&blocks).map(|(mean, _)| mean)
+            let scenes = device.scenes.iter().map(|scene| (scene, pairs(scene)));
+            let scenes: Vec<_> = scenes.filter(|(_, pairs)| !pairs.is_empty()).collect();
+            let each = scenes.chunks(1).map(|one| (Some(one[0].0), one));
+            for (scene, of) in each.chain([(None, &scenes[..])]) {
+                let mean = |value: &dyn Fn(&[f64; 2]) -> f64| {
+                    let blocks = of.iter().map(|(_, pairs)| pairs.iter().map(value).collect());
+                    mean_of_blocks(&blocks.collect::<Vec<_>>())
                 };
-                Some(Difference {
+                // The mean that stands for ratios is that of their logarithms, so that half and double cancel out.
+                let is_ratio = quantity.shown().is_ratio;
+                let change = mean(&|[ours, base]| if is_ratio { (ours / base).ln() } else { ours - base });
+                let back = |value: f64| if is_ratio { 100.0 * value.exp_m1() } else { value };
+                let all = [change, mean(&|pair| pair[0]), mean(&|pair| pair[1])];
+                let [Some((change, interval)), Some((ours, _)), Some((baseline, _))] = all else { continue };
+                differences.push(Difference {
                     device: device.name.clone(),
                     scene: scene.cloned(),
                     method: method.clone(),
                     quantity,
-                    pairs: pairs.iter().map(|pairs| pairs.len()).sum(),
-                    ours: mean(|pair| pair.0)?,
-                    baseline: mean(|pair| pair.1)?,
-                    change,
-                    interval,
-                })
-            };
-            differences.extend(scenes.iter().filter_map(|(scene, pairs)| difference(Some(scene), &[pairs])));
-            let all: Vec<&Vec<(f64, f64)>> = scenes.iter().map(|(_, pairs)| pairs).collect();
-            differences.extend(difference(None, &all));
+                    pairs: of.iter().map(|(_, pairs)| pairs.len()).sum(),
+                    scenes: of.len(),
+                    ours,
+                    baseline,
+                    change: back(change),
+                    interval: interval.map(|ends| ends.map(back)),
+                });
+            }
         }
     }
     differences
-}
-
-/// Returns the mean change over blocks of pairs, and its interval.
-fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Option<BlockInterval>)> {
-    let value = |(ours, baseline): &(f64, f64)| {
-        if !quantity.is_ratio() {
-            return Some(ours - baseline);
-        }
-        (*ours > 0.0 && *baseline > 0.0).then(|| (ours / baseline).ln())
-    };
-    let blocks: Vec<Vec<f64>> = blocks
-        .iter()
-        .map(|block| block.iter().map(value).collect::<Option<Vec<f64>>>())
-        .collect::<Option<_>>()?;
-    let (mean, interval) = mean_of_blocks(&blocks)?;
-    // The mean that stands for ratios is that of their logarithms, so that half and double cancel out.
-    let back = |value: f64| if quantity.is_ratio() { 100.0 * value.exp_m1() } else { value };
-    Some((back(mean), interval.map(|interval| interval.map(back))))
 }

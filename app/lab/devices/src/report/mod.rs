@@ -17,10 +17,11 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::capture::Capture;
+use super::capture::{Capture, DeviceInfo};
 use compare::{Difference, Mean};
-use run::{Integrated, Quantity, Run};
-use yoro_report::{CONFIDENCE, ReportError, ReportFiles};
+use run::{Quantity, Run};
+use yoro_report::ReportFiles;
+use yoro_report::stats::unique;
 use yoro_scenes::BUILTINS;
 
 /// A device that was measured.
@@ -28,11 +29,10 @@ use yoro_scenes::BUILTINS;
 struct Device {
     /// Name in tables. Ends in `(simulated)` for a simulated device.
     name: String,
-    android: String,
-    capacity_mah: Option<f64>,
+    #[serde(flatten)]
+    info: DeviceInfo,
     /// Number of battery cells, if the device reports the current of one cell; otherwise 1.
     cells: u32,
-    simulated: bool,
     applications: BTreeSet<String>,
     scenes: Vec<String>,
     /// Methods in the order of tables: the baseline, then this project's.
@@ -78,151 +78,103 @@ impl DeviceReport {
         cells: &BTreeMap<String, u32>,
         made_by: String,
     ) -> DeviceReport {
-        let cells_of = |capture: &Capture| cells.get(&capture.info.device.serial).copied().unwrap_or(1);
-        let names = device_names(sets.iter().flatten().map(|(_, capture)| capture));
-        let name = |capture: &Capture| names[&device_key(capture)].clone();
-        let mut seen = BTreeSet::new();
+        let all = unique(sets.iter().flatten().map(|(_, capture)| &capture.info.device));
         let mut runs: Vec<Run> = Vec::new();
-        let mut settings: BTreeMap<(String, String), BTreeSet<String>> = BTreeMap::new();
         for (set, captures) in sets.iter().enumerate() {
             for (folder, capture) in captures {
-                let info = &capture.info;
-                let what = (info.method.clone(), info.scene.clone(), info.repetition);
-                let identity = (device_key(capture), info.started_unix_s.to_bits(), what);
-                if !seen.insert(identity) {
-                    continue;
+                if runs.iter().all(|known| known.info != capture.info) {
+                    let device = &capture.info.device;
+                    let cells = cells.get(&device.serial).copied().unwrap_or(1);
+                    let folder = folder.display().to_string();
+                    runs.push(Run::of(capture, folder, set, device_name(device, &all), cells));
                 }
-                let device = name(capture);
-                let other = info.settings.iter().filter(|(key, _)| *key != "scene");
-                let text = other.map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ");
-                settings.entry((device.clone(), info.method.clone())).or_default().insert(text);
-                runs.push(Run::of(capture, folder.display().to_string(), set, device, cells_of(capture)));
             }
         }
         leave_out_repeated(&mut runs);
-        let captures = sets.iter().flatten().map(|(_, capture)| capture);
-        let devices = devices(captures, name, cells_of, baseline);
-
-        let means = devices.iter().flat_map(|device| compare::means(&runs, device)).collect();
-        let differences =
-            devices.iter().flat_map(|device| compare::differences(&runs, device, baseline)).collect();
-        let mut report = DeviceReport {
-            simulated: devices.iter().any(|device| device.simulated),
+        let devices = devices(&runs, baseline);
+        DeviceReport {
+            simulated: devices.iter().any(|device| device.info.simulated),
             baseline: baseline.into(),
-            confidence: CONFIDENCE,
+            confidence: 0.95,
             made_by,
             left_out: joined(left_out(&runs, &devices, baseline)),
-            faults: joined(faults(&runs)),
+            faults: joined(faults(&runs, &devices)),
+            differences: devices.iter().flat_map(|d| compare::differences(&runs, d, baseline)).collect(),
+            means: devices.iter().flat_map(|device| compare::means(&runs, device)).collect(),
             devices,
-            differences,
-            means,
             runs,
-        };
-        for ((device, method), texts) in settings.iter().filter(|(_, texts)| texts.len() > 1) {
-            let texts: Vec<&str> = texts.iter().map(|t| if t.is_empty() { "defaults" } else { t }).collect();
-            report.faults.push(Note {
-                name: "settings differ",
-                of: format!("{device}, {method}"),
-                detail: format!("runs under one name had different settings: {}", texts.join("; ")),
-            });
         }
-        report
     }
 
     /// Writes `report.html`, `report.md` and `report.json` into `folder`.
     ///
     /// # Errors
-    /// [`ReportError`]. All three are made before the first one is written.
-    pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
+    /// One sentence. All three are made before the first one is written.
+    pub fn write(&self, folder: &Path) -> anyhow::Result<ReportFiles> {
         self.report().write(folder, "report", Some(&serde_json::to_string_pretty(self)?))
     }
 }
 
-/// Returns the key that distinguishes devices: the serial number, and whether the device is simulated.
-fn device_key(capture: &Capture) -> (String, bool) {
-    (capture.info.device.serial.clone(), capture.info.device.simulated)
+impl Device {
+    fn runs<'a>(&'a self, runs: &'a [Run]) -> impl Iterator<Item = &'a Run> {
+        runs.iter().filter(|run| run.device_name == self.name)
+    }
 }
 
-/// Returns the devices' names in tables: manufacturer and model, with the serial number if two devices share them.
-fn device_names<'a>(captures: impl Iterator<Item = &'a Capture>) -> BTreeMap<(String, bool), String> {
-    let mut names: BTreeMap<(String, bool), String> = BTreeMap::new();
-    for capture in captures {
-        let device = &capture.info.device;
+/// Returns a device's name in tables: manufacturer and model, with the serial number if another one shares them.
+fn device_name(device: &DeviceInfo, all: &[&DeviceInfo]) -> String {
+    let plain = |device: &DeviceInfo| {
         let (maker, model) = (device.manufacturer.trim(), device.model.trim());
         let has_maker = model.to_lowercase().starts_with(&maker.to_lowercase());
         let name = if has_maker { model.to_owned() } else { format!("{maker} {model}").trim().to_owned() };
-        let name = if name.is_empty() { device.serial.clone() } else { name };
-        names.entry(device_key(capture)).or_insert(name);
-    }
-    let all: Vec<String> = names.values().cloned().collect();
-    for ((serial, simulated), name) in &mut names {
-        if all.iter().filter(|other| *other == name).count() > 1 {
-            *name = format!("{name} {serial}");
-        }
-        if *simulated {
-            name.push_str(" (simulated)");
-        }
-    }
-    names
+        if name.is_empty() { device.serial.clone() } else { name }
+    };
+    let is_other =
+        |other: &DeviceInfo| (&other.serial, other.simulated) != (&device.serial, device.simulated);
+    let shares = all.iter().any(|other| is_other(other) && plain(other) == plain(device));
+    let serial = if shares { format!(" {}", device.serial) } else { String::new() };
+    format!("{}{serial}{}", plain(device), if device.simulated { " (simulated)" } else { "" })
 }
 
-fn devices<'a>(
-    captures: impl Iterator<Item = &'a Capture>,
-    name: impl Fn(&Capture) -> String,
-    cells: impl Fn(&Capture) -> u32,
-    baseline: &str,
-) -> Vec<Device> {
+fn devices(runs: &[Run], baseline: &str) -> Vec<Device> {
     let mut devices: Vec<Device> = Vec::new();
-    for capture in captures {
-        let (info, name) = (&capture.info, name(capture));
-        let at = devices.iter().position(|device| device.name == name).unwrap_or_else(|| {
-            devices.push(Device {
-                name,
-                android: info.device.android.clone(),
-                capacity_mah: info.device.capacity_mah,
-                cells: cells(capture),
-                simulated: info.device.simulated,
-                applications: BTreeSet::new(),
-                scenes: Vec::new(),
-                methods: Vec::new(),
-            });
+    for Run { device_name, info, cells, .. } in runs {
+        let at = devices.iter().position(|device| device.name == *device_name).unwrap_or_else(|| {
+            let (name, info, applications) = (device_name.clone(), info.device.clone(), BTreeSet::new());
+            devices.push(Device { name, info, cells: *cells, applications, scenes: vec![], methods: vec![] });
             devices.len() - 1
         });
         let device = &mut devices[at];
         device.applications.extend(info.application.clone());
-        if !device.scenes.contains(&info.scene) {
-            device.scenes.push(info.scene.clone());
-        }
-        if !device.methods.contains(&info.method) {
-            device.methods.push(info.method.clone());
-        }
+        device.scenes.push(info.scene.clone());
+        device.methods.push(info.method.clone());
     }
     for device in &mut devices {
         let place =
             |scene: &str| BUILTINS.iter().position(|builtin| builtin.name == scene).unwrap_or(BUILTINS.len());
         device.scenes.sort_by_key(|scene| (place(scene), scene.clone()));
+        device.scenes.dedup();
         let rank = |method: &str| (method != baseline, !method.starts_with("yoro"));
         device.methods.sort_by_key(|method| (rank(method), method.clone()));
+        device.methods.dedup();
     }
-    devices.sort_by(|a, b| (a.simulated, &a.name).cmp(&(b.simulated, &b.name)));
+    devices.sort_by(|a, b| (a.info.simulated, &a.name).cmp(&(b.info.simulated, &b.name)));
     devices
 }
 
 /// Excludes all but the last run of a repetition that was made more than once.
 fn leave_out_repeated(runs: &mut [Run]) {
-    let key = |run: &Run| {
-        let place = (run.set, run.experiment.clone(), run.scene.clone(), run.method.clone(), run.repetition);
-        (run.device.clone(), place)
+    let counting = || runs.iter().filter(|run| run.counts(Quantity::Fps));
+    let is_repeated = |run: &Run| {
+        let same = |other: &&Run| {
+            let of = |run: &Run| (run.device_name.clone(), run.info.method.clone());
+            compare::key(other) == compare::key(run) && of(other) == of(run)
+        };
+        counting().filter(same).any(|other| other.info.started_unix_s > run.info.started_unix_s)
     };
-    let mut last: BTreeMap<_, f64> = BTreeMap::new();
-    for run in runs.iter().filter(|run| run.counts(Quantity::Fps)) {
-        let started = last.entry(key(run)).or_insert(run.started_unix_s);
-        *started = started.max(run.started_unix_s);
-    }
-    for run in runs.iter_mut().filter(|run| run.counts(Quantity::Fps)) {
-        if last.get(&key(run)).is_some_and(|started| run.started_unix_s < *started) {
-            run.leave_out("measured again", "a later run of the same repetition counts".into());
-        }
+    let repeated: Vec<bool> = runs.iter().map(|run| run.counts(Quantity::Fps) && is_repeated(run)).collect();
+    for (run, _) in runs.iter_mut().zip(repeated).filter(|(_, repeated)| *repeated) {
+        run.leave_out("measured again", "a later run of the same repetition counts".into());
     }
 }
 
@@ -230,78 +182,66 @@ fn left_out(runs: &[Run], devices: &[Device], baseline: &str) -> Vec<Note> {
     let mut notes = Vec::new();
     for run in runs {
         for exclusion in &run.exclusions {
-            let what =
-                if exclusion.power_only { "its power does not count" } else { "the run does not count" };
-            let detail = format!("{what}: {}", exclusion.reason);
+            let what = if exclusion.power_only { "its power" } else { "the run" };
+            let detail = format!("{what} does not count: {}", exclusion.reason);
             notes.push(Note { name: exclusion.name, of: run.name(), detail });
         }
     }
-    for device in devices {
-        for run in compare::without_partner(runs, device, baseline) {
-            let detail =
-                format!("no run of {baseline} that counts is there to compare it with; its own means count");
-            notes.push(Note { name: "no partner", of: run.name(), detail });
-        }
+    let detail = format!("no run of {baseline} that counts is there to compare it with; its own means count");
+    for run in devices.iter().flat_map(|device| compare::without_partner(runs, device, baseline)) {
+        notes.push(Note { name: "no partner", of: run.name(), detail: detail.clone() });
     }
     notes
 }
 
 /// Returns the notes with one for all those that say the same.
 fn joined(notes: Vec<Note>) -> Vec<Note> {
-    let mut all: Vec<(Note, usize)> = Vec::new();
-    for note in notes {
-        match all.iter_mut().find(|(known, _)| known.name == note.name && known.detail == note.detail) {
-            Some((known, count)) => {
-                *count += 1;
-                if *count <= 3 {
-                    known.of = format!("{}; {}", known.of, note.of);
-                }
-            }
-            None => all.push((note, 1)),
-        }
-    }
-    let finish = |(mut note, count): (Note, usize)| {
-        if count > 3 {
-            note.of = format!("{} and {} more", note.of, page::count(count - 3, "run"));
-        }
-        note
+    let one = |(name, detail): (&'static str, &String)| {
+        let same = notes.iter().filter(|note| note.name == name && note.detail == *detail);
+        let of: Vec<&str> = same.map(|note| note.of.as_str()).collect();
+        let shown = of[..of.len().min(3)].join("; ");
+        let more = of.len() - of.len().min(3);
+        let of = if more > 0 { format!("{shown} and {} more", page::count(more, "run")) } else { shown };
+        Note { name, of, detail: detail.clone() }
     };
-    all.into_iter().map(finish).collect()
+    unique(notes.iter().map(|note| (note.name, &note.detail))).into_iter().map(one).collect()
 }
 
-fn faults(runs: &[Run]) -> Vec<Note> {
+fn faults(runs: &[Run], devices: &[Device]) -> Vec<Note> {
     let mut notes = Vec::new();
     for run in runs {
-        for fault in &run.faults {
+        let mut note = |name, detail| notes.push(Note { name, of: run.name(), detail });
+        for fault in &run.info.faults {
             let at = fault.at_s.map(|at| format!(" (at {at:.0} s)")).unwrap_or_default();
-            let detail = format!("{}{at}", fault.detail);
-            notes.push(Note { name: fault.kind.name(), of: run.name(), detail });
+            note(fault.kind.name(), format!("{}{at}", fault.detail));
         }
         if run.gaps > 0 {
             let gaps = page::count(run.gaps, "gap");
-            let detail = format!("{gaps} in the samples, not bridged: {:.0} s count", run.covered_s);
-            notes.push(Note { name: "gaps", of: run.name(), detail });
+            note("gaps", format!("{gaps} in the samples, not bridged: {:.0} s count", run.covered_s));
         }
-        let mut note = |name, detail| notes.push(Note { name, of: run.name(), detail });
-        if let Some(found) = run.integrated.filter(Integrated::is_implausible) {
+        // Charging, up to 0, is excluded elsewhere.
+        let milliwatts = run.integrated.map_or(0.0, |integrated| integrated.milliwatts);
+        if milliwatts > 0.0 && !(100.0..=30_000.0).contains(&milliwatts) {
             let detail = format!(
-                "a mean power of {:.1} mW is implausible (below 100 mW or above 30 W): the unit of the battery's current \
-                 or voltage is another one",
-                found.milliwatts
+                "a mean power of {milliwatts:.1} mW is implausible (below 100 mW or above 30 W): the unit of the battery's \
+                 current or voltage is another one"
             );
             note("implausible power", detail);
         }
-        let counted = run.counted.filter(|_| run.counts(Quantity::Power));
-        if counted.is_some_and(|counted| counted.scale >= run::MILLI) {
+        if !run.counts(Quantity::Power) {
+            continue;
+        }
+        if run.counted.is_some_and(|counted| counted.scale >= run::MILLI) {
             note("counter in mAh", "the charge counter is in mAh in place of uAh; corrected".into());
         }
-        if let Some(by) = run.twice_by().filter(|_| run.counts(Quantity::Power)) {
+        if let Some(by) = run.twice_by() {
             let detail = format!(
                 "{by} says about twice what current x voltage says: if the battery has two cells and the device gives \
                  the current of one, give the report their number"
             );
             note("two cells?", detail);
-        } else if let Some(counted) = counted.filter(|c| c.disagreement().abs() > run::COUNTER_TOLERANCE) {
+        } else if let Some(counted) = run.counted.filter(|c| c.disagreement().abs() > run::COUNTER_TOLERANCE)
+        {
             let detail = format!(
                 "over {:.0} s the charge counter says {:.0} mW, current x voltage {:.0} mW ({:+.0} %): one of the \
                  device's gauges is wrong",
@@ -313,5 +253,20 @@ fn faults(runs: &[Run]) -> Vec<Note> {
             note("counter disagrees", detail);
         }
     }
+    for (device, method) in devices.iter().flat_map(|d| d.methods.iter().map(move |method| (d, method))) {
+        let of = device.runs(runs).filter(|run| run.info.method == *method);
+        let settings: BTreeSet<String> = of.map(settings).collect();
+        if settings.len() > 1 {
+            let settings = settings.into_iter().collect::<Vec<_>>().join("; ");
+            let detail = format!("runs under one name had different settings: {settings}");
+            notes.push(Note { name: "settings differ", of: format!("{}, {method}", device.name), detail });
+        }
+    }
     notes
+}
+
+fn settings(run: &Run) -> String {
+    let other = run.info.settings.iter().filter(|(key, _)| *key != "scene");
+    let text = other.map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ");
+    if text.is_empty() { "defaults".into() } else { text }
 }

@@ -1,13 +1,13 @@
 //! The figures of one run, and the reasons for excluding it.
 
-use crate::farm;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::capture::{Capture, Fault, FaultKind, Outcome, Sample};
+use crate::capture::{Capture, FaultKind, Outcome, RunInfo, Sample};
+use crate::farm;
 use crate::reading::LEAST_MILLIVOLTS;
-use yoro_report::stats::median;
+use yoro_report::stats::{mean, median};
 
 /// Voltage that the paper uses to compute energy from battery percent.
 pub const PAPER_VOLTS: f64 = 3.7;
@@ -16,7 +16,7 @@ pub const LEAST_COVERED: f64 = 0.8;
 /// Maximum relative difference between current x voltage and the charge counter that is not reported.
 pub const COUNTER_TOLERANCE: f64 = 0.1;
 /// Factor from milliampere-hours to microampere-hours.
-pub(super) const MILLI: f64 = 1e3;
+pub const MILLI: f64 = 1e3;
 /// Minimum charge of a full battery in microampere-hours. If the counter implies less, it counts milliampere-hours.
 const LEAST_FULL_UAH: f64 = 100_000.0;
 /// Relative tolerance for recognising the counter of one cell by the battery's capacity divided by the number of cells.
@@ -27,64 +27,53 @@ const TWICE: std::ops::Range<f64> = 1.6..2.6;
 const GAP: f64 = 2.5;
 
 /// A measured quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
     Power,
     Fps,
+    Stale,
     FrameTime,
     /// 99th percentile of the times between frames, mean over the seconds.
     FrameTimeP99,
     GpuTime,
-    Stale,
     Temperature,
     Rise,
     Cpu,
     Memory,
 }
 
+/// How a quantity is shown in tables.
+pub struct Shown {
+    pub name: &'static str,
+    pub unit: &'static str,
+    pub decimals: usize,
+    /// True if two values are compared by their ratio. Temperatures, whose zero is arbitrary, and stale frames, which may
+    /// be 0, are compared by their difference.
+    pub is_ratio: bool,
+}
+
 impl Quantity {
     /// All quantities in the order of tables.
     pub const ALL: [Quantity; 10] = {
         use Quantity::*;
-        [Power, Fps, FrameTime, FrameTimeP99, GpuTime, Stale, Temperature, Rise, Cpu, Memory]
+        [Power, Fps, Stale, FrameTime, FrameTimeP99, GpuTime, Temperature, Rise, Cpu, Memory]
     };
 
-    /// Returns name and unit in tables, number of decimals, and whether two values are compared by their ratio.
-    fn row(self) -> (&'static str, &'static str, usize, bool) {
-        match self {
+    pub fn shown(self) -> Shown {
+        let (name, unit, decimals, is_ratio) = match self {
             Quantity::Power => ("power", "mW", 0, true),
             Quantity::Fps => ("frame rate", "FPS", 1, true),
+            Quantity::Stale => ("stale frames", "1/s", 2, false),
             Quantity::FrameTime => ("frame time", "ms", 2, true),
             Quantity::FrameTimeP99 => ("frame time p99", "ms", 2, true),
             Quantity::GpuTime => ("GPU time", "ms", 2, true),
-            Quantity::Stale => ("stale frames", "1/s", 2, false),
             Quantity::Temperature => ("temperature", "°C", 1, false),
             Quantity::Rise => ("temperature rise", "K", 1, false),
             Quantity::Cpu => ("CPU", "% of a core", 1, true),
             Quantity::Memory => ("memory", "MB", 1, true),
-        }
-    }
-
-    /// Returns the quantity's name in tables.
-    pub fn name(self) -> &'static str {
-        self.row().0
-    }
-
-    /// Returns the quantity's unit in tables.
-    pub fn unit(self) -> &'static str {
-        self.row().1
-    }
-
-    /// Returns the number of decimals in tables.
-    pub fn decimals(self) -> usize {
-        self.row().2
-    }
-
-    /// True if two values are compared by their ratio. Temperatures, whose zero is arbitrary, and stale frames, which
-    /// may be 0, are compared by their difference.
-    pub fn is_ratio(self) -> bool {
-        self.row().3
+        };
+        Shown { name, unit, decimals, is_ratio }
     }
 }
 
@@ -93,13 +82,6 @@ impl Quantity {
 pub struct Integrated {
     pub milliwatts: f64,
     pub seconds: f64,
-}
-
-impl Integrated {
-    /// True if no phone or headset that renders takes this power. Charging, up to 0, is excluded elsewhere.
-    pub fn is_implausible(&self) -> bool {
-        self.milliwatts > 0.0 && !(100.0..=30_000.0).contains(&self.milliwatts)
-    }
 }
 
 /// Power from the battery's charge counter.
@@ -145,16 +127,11 @@ pub struct Run {
     /// Index of the given folder that contains the run. The same repetition in another folder counts as a further one.
     pub set: usize,
     /// The device's name in tables.
-    pub device: String,
-    pub simulated: bool,
-    pub experiment: Option<String>,
-    pub method: String,
-    pub scene: String,
-    pub repetition: u32,
-    pub started_unix_s: f64,
+    pub device_name: String,
+    #[serde(flatten)]
+    pub info: RunInfo,
     /// Factor on current x voltage: the number of battery cells if the device reports the current of one, otherwise 1.
     pub cells: u32,
-    pub planned_s: f64,
     /// Time in seconds for which samples are close enough to each other.
     pub covered_s: f64,
     pub gaps: usize,
@@ -162,80 +139,63 @@ pub struct Run {
     pub integrated: Option<Integrated>,
     pub counted: Option<Counted>,
     pub by_level: Option<ByLevel>,
-    pub faults: Vec<Fault>,
     /// Reasons for which the run, or only its power, is excluded.
     pub exclusions: Vec<Exclusion>,
 }
 
 impl Run {
     /// Computes the figures of a capture. `cells` is 1 if the device reports the current of the whole battery.
-    pub fn of(capture: &Capture, folder: String, set: usize, device: String, cells: u32) -> Run {
+    pub fn of(capture: &Capture, folder: String, set: usize, device_name: String, cells: u32) -> Run {
         let info = &capture.info;
         let window = info.warm_up_s..=info.warm_up_s + info.duration_s;
         let samples: Vec<&Sample> = capture.samples.iter().filter(|s| window.contains(&s.time_s)).collect();
         let longest_step = GAP * usual_step(&samples).unwrap_or(1.0);
-        let series = |value: fn(&Sample) -> Option<f64>| -> Vec<(f64, f64)> {
-            samples.iter().filter_map(|sample| Some((sample.time_s, value(sample)?))).collect()
+        let series = |value: fn(&Sample) -> Option<f64>, factor: f64| -> Vec<(f64, f64)> {
+            samples.iter().filter_map(|sample| Some((sample.time_s, factor * value(sample)?))).collect()
         };
-        let mut power = series(milliwatts);
-        power.iter_mut().for_each(|(_, milliwatts)| *milliwatts *= f64::from(cells));
-        let mut charge = series(|s| s.charge_uah);
+        let power = series(milliwatts, f64::from(cells));
         let scale = counter_scale(&samples, info.device.capacity_mah, cells);
-        charge.iter_mut().for_each(|(_, charge)| *charge *= scale);
-        let fps = series(|s| s.fps);
-        let temperature = series(|s| s.battery_celsius);
+        let charge = series(|s| s.charge_uah, scale);
         // By frame rates, since other values may have continued while the application drew nothing.
-        let (covered_s, gaps) = coverage(&fps, longest_step);
+        let fps = series(|s| s.fps, 1.0);
         let integrated = integrate(&power, longest_step);
 
         let mut run = Run {
             folder,
             set,
-            device,
-            simulated: info.device.simulated,
-            experiment: info.experiment.clone(),
-            method: info.method.clone(),
-            scene: info.scene.clone(),
-            repetition: info.repetition,
-            started_unix_s: info.started_unix_s,
+            device_name,
+            info: info.clone(),
             cells,
-            planned_s: info.duration_s,
-            covered_s,
-            gaps,
+            covered_s: steps(&fps, longest_step).map(|(a, b)| b.0 - a.0).sum(),
+            gaps: fps.windows(2).filter(|pair| pair[1].0 - pair[0].0 > longest_step).count(),
             values: BTreeMap::new(),
             integrated,
-            counted: count(&charge, &series(voltage), &power, longest_step)
-                .map(|counted| Counted { scale, ..counted }),
-            by_level: by_level(&series(|s| s.level_percent), info.device.capacity_mah),
-            faults: info.faults.clone(),
+            counted: count(&charge, &series(voltage, 1.0), &power, longest_step, scale),
+            by_level: by_level(&series(|s| s.level_percent, 1.0), info.device.capacity_mah),
             exclusions: Vec::new(),
         };
-        if let Some((name, reason)) = run.exclusion_reason(capture) {
+        if let Some((name, reason)) = run.exclusion_reason() {
             run.leave_out(name, reason);
         } else if let Some((name, reason)) = run.without_power(capture, &samples) {
             run.exclusions.push(Exclusion { power_only: true, name, reason });
         }
-        if run.counts(Quantity::Power) {
-            run.values.extend(integrated.map(|i| (Quantity::Power, i.milliwatts)));
-        }
-        if !run.counts(Quantity::Fps) {
-            return run;
-        }
-        // Frame and GPU times are weighted by frames, since a second of slow frames has fewer of them.
+        let mean = |value: fn(&Sample) -> Option<f64>| mean(samples.iter().filter_map(|s| value(s)));
+        let celsius: Vec<f64> = samples.iter().filter_map(|s| s.battery_celsius).collect();
         let values = [
-            (Quantity::Fps, mean(&fps)),
+            (Quantity::Power, integrated.map(|integrated| integrated.milliwatts)),
+            (Quantity::Fps, mean(|s| s.fps)),
+            (Quantity::Stale, mean(|s| s.stale)),
+            // Frame and GPU times are weighted by frames, since a second of slow frames has fewer of them.
             (Quantity::FrameTime, mean_over_frames(&samples, |s| s.frame_ms)),
+            (Quantity::FrameTimeP99, mean(|s| s.p99_ms)),
             (Quantity::GpuTime, mean_over_frames(&samples, |s| s.gpu_ms)),
-            (Quantity::FrameTimeP99, mean(&series(|s| s.p99_ms))),
-            (Quantity::Stale, mean(&series(|s| s.stale))),
-            (Quantity::Temperature, mean(&temperature)),
-            (Quantity::Cpu, mean(&series(|s| s.cpu_percent))),
-            (Quantity::Memory, mean(&series(|s| s.rss_mb))),
+            (Quantity::Temperature, mean(|s| s.battery_celsius)),
+            (Quantity::Rise, celsius.first().zip(celsius.last()).map(|(first, last)| last - first)),
+            (Quantity::Cpu, mean(|s| s.cpu_percent)),
+            (Quantity::Memory, mean(|s| s.rss_mb)),
         ];
-        run.values.extend(values.into_iter().filter_map(|(quantity, value)| Some((quantity, value?))));
-        if let (Some(first), Some(last)) = (temperature.first(), temperature.last()) {
-            run.values.insert(Quantity::Rise, last.1 - first.1);
-        }
+        let counts = values.into_iter().filter(|(quantity, _)| run.counts(*quantity));
+        run.values = counts.filter_map(|(quantity, value)| Some((quantity, value?))).collect();
         run
     }
 
@@ -246,86 +206,79 @@ impl Run {
 
     /// Returns the run's name in sentences.
     pub fn name(&self) -> String {
-        format!("{}, {}, {}, repetition {}", self.device, self.scene, self.method, self.repetition)
+        let RunInfo { scene, method, repetition, .. } = &self.info;
+        format!("{}, {scene}, {method}, repetition {repetition}", self.device_name)
     }
 
     /// Returns the name of another power estimate that is about twice current x voltage, which suggests that the
     /// current is that of one of two cells.
-    pub(super) fn twice_by(&self) -> Option<&'static str> {
+    pub fn twice_by(&self) -> Option<&'static str> {
         let integrated = self.integrated?.milliwatts;
-        let counted = self.counted.map(|c| c.milliwatts / c.integrated_milliwatts);
-        if counted.is_some_and(|ratio| TWICE.contains(&ratio)) {
+        if self.counted.is_some_and(|counted| TWICE.contains(&(1.0 + counted.disagreement()))) {
             return Some("the charge counter");
         }
         // The level is in whole percents, so it may be off by one.
-        let by_level = self.by_level?;
-        let step = by_level.step_milliwatts;
-        let is_sure = (by_level.milliwatts - step) / integrated > TWICE.start / 1.1;
-        let is_close = TWICE.contains(&(by_level.milliwatts / integrated));
-        (is_sure && is_close).then_some("the battery's level")
+        let ByLevel { milliwatts, step_milliwatts } = self.by_level?;
+        let is_sure = (milliwatts - step_milliwatts) / integrated > TWICE.start / 1.1;
+        (is_sure && TWICE.contains(&(milliwatts / integrated))).then_some("the battery's level")
     }
 
-    pub(super) fn leave_out(&mut self, name: &'static str, reason: String) {
+    pub fn leave_out(&mut self, name: &'static str, reason: String) {
         self.exclusions.push(Exclusion { power_only: false, name, reason });
         self.values.clear();
     }
 
-    fn find(&self, kind: FaultKind) -> Option<&Fault> {
-        self.faults.iter().find(|fault| fault.kind == kind)
+    /// Returns the first fault of a kind at this time or later, or of the whole run.
+    fn fault(&self, kind: FaultKind, from_s: f64) -> Option<(&'static str, String)> {
+        let is_it = |at_s: Option<f64>| at_s.is_none_or(|at| at >= from_s);
+        let found = self.info.faults.iter().find(|fault| fault.kind == kind && is_it(fault.at_s))?;
+        Some((kind.name(), found.detail.clone()))
     }
 
     /// Returns why the whole run is excluded. This is the first reason found, since further ones may follow from it.
-    fn exclusion_reason(&self, capture: &Capture) -> Option<(&'static str, String)> {
-        match &capture.info.outcome {
+    fn exclusion_reason(&self) -> Option<(&'static str, String)> {
+        match &self.info.outcome {
             Outcome::Complete => {}
             Outcome::Interrupted { reason } => return Some(("interrupted", reason.clone())),
             Outcome::Failed { reason } => return Some(("failed", reason.clone())),
         }
-        if self.method.starts_with(farm::PICTURE_CHECK) {
+        if self.info.method.starts_with(farm::PICTURE_CHECK) {
             let reason =
                 "a few seconds that check a pipeline's pictures, warm-up included; scenario 2 measures";
             return Some(("picture check", reason.into()));
         }
-        if let Some(fault) = self.find(FaultKind::Rebooted) {
-            return Some(("rebooted", fault.detail.clone()));
-        }
+        let (covered, planned) = (self.covered_s, self.info.duration_s);
+        let too_short = || ("too short", format!("{covered:.0} s of {planned:.0} s have frame rates"));
         // Faults in the warm-up do not affect the measurement.
-        let late = |fault: &&Fault| fault.at_s.is_none_or(|at| at >= capture.info.warm_up_s);
-        if let Some(fault) = self.find(FaultKind::Restarted).filter(late) {
-            return Some(("application restarted", fault.detail.clone()));
-        }
-        let (covered, planned) = (self.covered_s, self.planned_s);
-        (covered < LEAST_COVERED * planned)
-            .then(|| ("too short", format!("{covered:.0} s of {planned:.0} s have frame rates")))
+        let fault = self.fault(FaultKind::Rebooted, 0.0);
+        let fault = fault.or_else(|| self.fault(FaultKind::Restarted, self.info.warm_up_s));
+        fault.or_else(|| (covered < LEAST_COVERED * planned).then(too_short))
     }
 
     /// Returns why the run's power is excluded.
     fn without_power(&self, capture: &Capture, samples: &[&Sample]) -> Option<(&'static str, String)> {
+        if let Some(plugged_in) = self.fault(FaultKind::PluggedIn, 0.0) {
+            return Some(plugged_in);
+        }
         let plugged =
             capture.samples.iter().filter(|s| s.plugged.is_some_and(|plugged| plugged != 0)).count();
-        if let Some(fault) = self.find(FaultKind::PluggedIn) {
-            return Some(("plugged in", fault.detail.clone()));
-        }
         if plugged > 0 {
             return Some(("plugged in", format!("a charger was plugged in for {plugged} samples")));
         }
-        let Some(integrated) = self.integrated else {
-            let none = samples.iter().all(|s| s.current_ma.is_none());
-            let what = if none { "the battery's current" } else { "current and voltage together" };
-            if let Some(fault) = self.find(FaultKind::VoltageInVolts).filter(|_| !none) {
-                return Some(("voltage in V", fault.detail.clone()));
+        let Some(Integrated { milliwatts, seconds }) = self.integrated else {
+            if samples.iter().all(|s| s.current_ma.is_none()) {
+                return Some(("no current", "the device does not give the battery's current".into()));
             }
-            return Some(("no current", format!("the device does not give {what}")));
+            let volts = self.fault(FaultKind::VoltageInVolts, 0.0);
+            let missing = "the device does not give current and voltage together";
+            return volts.or_else(|| Some(("no current", missing.into())));
         };
-        let (seconds, planned) = (integrated.seconds, self.planned_s);
+        let planned = self.info.duration_s;
         if seconds < LEAST_COVERED * planned {
-            return Some((
-                "current missing",
-                format!("{seconds:.0} s of {planned:.0} s have current and voltage"),
-            ));
+            let missing = format!("{seconds:.0} s of {planned:.0} s have current and voltage");
+            return Some(("current missing", missing));
         }
-        let charging = integrated.milliwatts <= 0.0;
-        charging.then(|| ("charging", "on the mean, the battery was charged".into()))
+        (milliwatts <= 0.0).then(|| ("charging", "on the mean, the battery was charged".into()))
     }
 }
 
@@ -362,13 +315,6 @@ fn steps(series: &[(f64, f64)], longest: f64) -> impl Iterator<Item = ((f64, f64
     pairs.filter(move |(a, b)| b.0 > a.0 && b.0 - a.0 <= longest)
 }
 
-/// Returns the time covered without gaps in seconds, and the number of gaps.
-fn coverage(series: &[(f64, f64)], longest: f64) -> (f64, usize) {
-    let covered = steps(series, longest).map(|(a, b)| b.0 - a.0).sum();
-    let gaps = series.windows(2).filter(|pair| pair[1].0 - pair[0].0 > longest).count();
-    (covered, gaps)
-}
-
 /// Integrates power by trapezoids over the samples' actual times.
 fn integrate(power: &[(f64, f64)], longest: f64) -> Option<Integrated> {
     let steps = steps(power, longest);
@@ -383,6 +329,7 @@ fn count(
     voltage: &[(f64, f64)],
     power: &[(f64, f64)],
     longest: f64,
+    scale: f64,
 ) -> Option<Counted> {
     let changes: Vec<(f64, f64)> =
         steps(charge, longest).filter(|(a, b)| a.1 != b.1).map(|(_, b)| b).collect();
@@ -391,14 +338,12 @@ fn count(
         series.iter().copied().filter(|(time, _)| (first.0..=last.0).contains(time)).collect()
     };
     let seconds = last.0 - first.0;
-    let volts = mean(&between(voltage))? / 1e3;
-    let milliampere_hours = (first.1 - last.1) / 1e3;
-    (seconds > 0.0).then_some(())?;
-    Some(Counted {
-        milliwatts: milliampere_hours * volts * 3600.0 / seconds,
+    let volts = mean(between(voltage).into_iter().map(|(_, millivolts)| millivolts / 1e3))?;
+    (seconds > 0.0).then_some(Counted {
+        milliwatts: (first.1 - last.1) / 1e3 * volts * 3600.0 / seconds,
         integrated_milliwatts: integrate(&between(power), longest)?.milliwatts,
         seconds,
-        scale: 1.0,
+        scale,
     })
 }
 
@@ -410,11 +355,6 @@ fn by_level(level: &[(f64, f64)], capacity_mah: Option<f64>) -> Option<ByLevel> 
         milliwatts: (first.1 - last.1) * percent_milliwatts,
         step_milliwatts: percent_milliwatts,
     })
-}
-
-fn mean(series: &[(f64, f64)]) -> Option<f64> {
-    let sum: f64 = series.iter().map(|(_, value)| value).sum();
-    (!series.is_empty()).then(|| sum / series.len() as f64)
 }
 
 /// Returns the mean over the seconds, weighted by their frames.

@@ -7,8 +7,7 @@ use serde::Serialize;
 use super::ratings::Ratings;
 use crate::DataError;
 use yoro_files::{FileError, interrupt};
-use yoro_report::stats::{median, unique};
-use yoro_report::{Interval, Sample};
+use yoro_report::stats::{Sample, unique};
 
 /// A participant who was left out of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -16,24 +15,6 @@ pub(super) struct Excluded {
     pub(super) participant: String,
     /// Which ratings are missing.
     pub(super) reason: String,
-}
-
-/// What participants say of a method: one value for each, the mean over the scenes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct Opinion {
-    /// Mean and scatter over the participants.
-    #[serde(flatten)]
-    pub(super) sample: Sample,
-    pub(super) median: f64,
-    /// The interval of the mean; `None` for a single participant.
-    pub(super) interval: Option<Interval>,
-}
-
-impl Opinion {
-    fn of(values: &[f64]) -> Option<Opinion> {
-        let sample = Sample::of(values)?;
-        Some(Opinion { sample, median: median(values)?, interval: sample.interval() })
-    }
 }
 
 /// A method beside the baseline by the answers to one question.
@@ -47,10 +28,11 @@ pub(super) struct Question {
     pub(super) participants: Vec<(String, f64, f64)>,
     /// Participants left out of this comparison, with the reason.
     pub(super) excluded: Vec<Excluded>,
-    pub(super) ours: Opinion,
-    pub(super) baseline: Opinion,
+    /// What participants say of the method: one value for each, the mean over the scenes.
+    pub(super) ours: Sample,
+    pub(super) baseline: Sample,
     /// Method minus baseline, by participant.
-    pub(super) difference: Opinion,
+    pub(super) difference: Sample,
 }
 
 /// An analysed study.
@@ -151,7 +133,7 @@ fn compare(ratings: &Ratings, question: &str, method: &str, baseline_method: &st
         excluded.push(Excluded { participant: participant.into(), reason });
     }
     let values = |value: fn(&(String, f64, f64)) -> f64| {
-        Opinion::of(&participants.iter().map(value).collect::<Vec<_>>())
+        Sample::of(&participants.iter().map(value).collect::<Vec<_>>())
     };
     Some(Question {
         question: question.into(),
@@ -200,13 +182,13 @@ mod tests {
         let study = study(made_up(&[0.2, -0.1, 0.4, 0.1, -0.3, 0.25]));
         let question = &study.questions[0];
         let near = |ours: f64, reference: f64| assert!((ours - reference).abs() < 1e-6, "{ours} {reference}");
-        near(question.difference.sample.mean, 0.091666666667);
+        near(question.difference.mean, 0.091666666667);
         near(question.difference.median, 0.15);
-        let interval = question.difference.interval.unwrap();
-        near(interval.low, -0.174684702212);
-        near(interval.high, 0.358018035546);
-        assert_eq!((question.ours.sample.n, study.participants), (6, 6));
-        near(question.baseline.sample.mean, 3.0);
+        let [low, high] = question.difference.interval.unwrap();
+        near(low, -0.174684702212);
+        near(high, 0.358018035546);
+        assert_eq!((question.ours.n, study.participants), (6, 6));
+        near(question.baseline.mean, 3.0);
     }
 
     #[test]

@@ -3,11 +3,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::analysis::{Opinion, Question, Study};
+use super::analysis::{Question, Study};
 use yoro_report::paper::{PAPER, STUDY_PARTICIPANTS};
-use yoro_report::{
-    Axis, CONFIDENCE, Cell, Entry, Interval, Plot, Report, ReportError, ReportFiles, Section, Table, Text,
-};
+use yoro_report::stats::Sample;
+use yoro_report::{Axis, Cell, Entry, Plot, Report, ReportFiles, Section, Table, Text};
 
 impl Study {
     pub(super) fn report(&self) -> Report {
@@ -49,8 +48,8 @@ impl Study {
     /// Writes `study.html`, `study.md` and `study.json` into `folder`.
     ///
     /// # Errors
-    /// [`ReportError`]. All three are made before the first one is written.
-    pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
+    /// One sentence. All three are made before the first one is written.
+    pub fn write(&self, folder: &Path) -> anyhow::Result<ReportFiles> {
         self.report().write(folder, "study", Some(&serde_json::to_string_pretty(self)?))
     }
 }
@@ -68,12 +67,10 @@ fn unanswered(study: &Study) -> Vec<String> {
 
 /// Returns the means, their difference and its interval as words.
 fn in_words(question: &Question) -> String {
-    let Opinion { sample, interval, .. } = question.difference;
-    let confidence = 100.0 * CONFIDENCE;
-    let interval = interval.map(|i| format!("{confidence:.0} % interval {:+.2} to {:+.2}; ", i.low, i.high));
-    let (ours, baseline) = (question.ours.sample.mean, question.baseline.sample.mean);
-    let interval = interval.unwrap_or_default();
-    format!("{ours:.2} against {baseline:.2}, {:+.2} ({interval}n = {})", sample.mean, sample.n)
+    let Sample { mean, n, interval, .. } = question.difference;
+    let interval = interval.map(|[low, high]| format!("95 % interval {low:+.2} to {high:+.2}; "));
+    let (ours, baseline) = (question.ours.mean, question.baseline.mean);
+    format!("{ours:.2} against {baseline:.2}, {mean:+.2} ({}n = {n})", interval.unwrap_or_default())
 }
 
 fn table(study: &Study) -> Table {
@@ -83,36 +80,33 @@ fn table(study: &Study) -> Table {
         "participants".into(),
         "mean ± sd (median)".into(),
         format!("{}, mean ± sd (median)", study.baseline),
-        format!("difference [{:.0} %]", 100.0 * CONFIDENCE),
+        "difference [95 %]".into(),
     ];
     let mut table =
         Table::new(format!("Ratings on a scale from {} to {}", study.scale[0], study.scale[1]), &columns);
-    let opinion = |Opinion { sample, median, .. }: Opinion| {
-        Some(format!("{:.2} ± {:.2} ({median:.2})", sample.mean, sample.std))
-    };
-    let difference = |mean: f64, interval: Option<Interval>| {
-        let interval = interval.map(|i| format!(" [{:+.3}, {:+.3}]", i.low, i.high)).unwrap_or_default();
-        Some(format!("{mean:+.3}{interval}"))
+    let opinion = |of: Sample| Some(format!("{:.2} ± {:.2} ({:.2})", of.mean, of.std, of.median));
+    let difference = |mean: f64, interval: Option<[f64; 2]>| {
+        let interval = interval.map(|[low, high]| format!(" [{low:+.3}, {high:+.3}]"));
+        Some(format!("{mean:+.3}{}", interval.unwrap_or_default()))
     };
     for question in &study.questions {
         table.push(vec![
             Cell::plain(&question.question),
             Cell::plain(&question.method),
-            Cell::plain(question.difference.sample.n.to_string()),
+            Cell::plain(question.difference.n.to_string()),
             Cell::ours(opinion(question.ours)),
             Cell::base(opinion(question.baseline)),
-            Cell::ours(difference(question.difference.sample.mean, question.difference.interval)),
+            Cell::ours(difference(question.difference.mean, question.difference.interval)),
         ]);
     }
-    for (i, papers) in PAPER.study.iter().enumerate() {
-        let [low, high] = papers.interval;
+    for (i, (name, [low, high])) in PAPER.study.iter().enumerate() {
         let cells = vec![
-            Cell::paper(Some(format!("the paper's: {}", papers.name))),
+            Cell::paper(Some(format!("the paper's: {name}"))),
             Cell::paper(Some("YORO")),
             Cell::paper(Some(STUDY_PARTICIPANTS.to_string())),
             Cell::paper(None::<String>),
             Cell::paper(None::<String>),
-            Cell::paper(difference((low + high) / 2.0, Some(Interval { low, high }))),
+            Cell::paper(difference((low + high) / 2.0, Some([*low, *high]))),
         ];
         if i == 0 { table.push_first(cells) } else { table.push(cells) }
     }
@@ -137,17 +131,17 @@ fn left_out(study: &Study) -> Table {
 }
 
 fn plots(study: &Study) -> [Plot; 2] {
-    let caption = format!("Means over the participants; bars: {:.0} % intervals.", 100.0 * CONFIDENCE);
-    let mut ratings = Plot::rows("Ratings", Axis::new("rating").lines(&study.scale)).caption(caption.clone());
+    let caption = "Means over the participants; bars: 95 % intervals.";
+    let mut ratings = Plot::rows("Ratings", Axis::new("rating").lines(&study.scale)).caption(caption);
     let axis = Axis::new(format!("difference from {}", study.baseline)).baseline(0.0);
     let mut differences = Plot::rows(format!("Differences from {}", study.baseline), axis).caption(caption);
     for question in &study.questions {
         let row = heading(question);
-        for (method, opinion) in [(&study.baseline, question.baseline), (&question.method, question.ours)] {
-            ratings.mark_interval(&row, Entry::ours(method), opinion.sample.mean, opinion.interval);
+        let Question { method, baseline, ours, difference, .. } = question;
+        for (method, Sample { mean, interval, .. }) in [(&study.baseline, baseline), (method, ours)] {
+            ratings.mark_interval(&row, Entry::ours(method), *mean, *interval);
         }
-        let Opinion { sample, interval, .. } = question.difference;
-        differences.mark_interval(&row, Entry::ours(&question.method), sample.mean, interval);
+        differences.mark_interval(&row, Entry::ours(method), difference.mean, difference.interval);
     }
     [ratings, differences]
 }

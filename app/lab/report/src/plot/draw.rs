@@ -7,10 +7,10 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged};
 use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
-use serde::Serialize;
+use serde_json::{Value, json};
 
-use super::{Axis, Entry, Plot, Point, Style};
-use crate::palette::{self, Look, Shape};
+use super::{Axis, Entry, Plot, Point};
+use crate::palette::{self, Shape};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scaled, Scaled>>;
@@ -26,30 +26,6 @@ const ROW_HEIGHT: i32 = 42;
 const LANE: i32 = 24;
 /// Number of characters that fit to the left of the rows.
 const LABEL: usize = 19;
-
-/// A plot as drawn.
-pub(super) struct Drawing {
-    /// The SVG document. The marks of each entry of the legend are a group with the attribute `data-series`.
-    pub svg: String,
-    /// A small SVG document with the mark of each entry of the legend.
-    pub swatches: Vec<String>,
-    /// All points.
-    pub points: Vec<Place>,
-}
-
-/// A point and its place.
-#[derive(Serialize)]
-pub(super) struct Place {
-    /// The number of its entry in the legend.
-    series: usize,
-    /// The place in SVG units.
-    at: (i32, i32),
-    x: f64,
-    /// The value on the vertical axis, or the number of the row.
-    y: f64,
-    /// The ends of the interval of x.
-    interval: Option<[f64; 2]>,
-}
 
 /// The scale of an axis.
 #[derive(Clone)]
@@ -126,10 +102,11 @@ impl plotters::coord::ranged1d::ValueFormatter<f64> for Scaled {
     }
 }
 
-/// Draws a plot: axes, then a layer for each entry of the legend, so that the page can hide one.
-pub(super) fn draw(plot: &Plot) -> DrawingResult<Drawing> {
+/// Draws a plot, on request with its legend below in two columns, and returns all points with their places. The marks of
+/// each entry of the legend are a group with the attribute `data-series`, so that the page can hide one.
+pub(super) fn draw(plot: &Plot, with_legend: bool) -> DrawingResult<(String, Vec<Value>)> {
     let legend = plot.legend();
-    let mut points = Vec::new();
+    let mut places = Vec::new();
     let mut body = layer(plot, |root, chart| {
         root.fill(&rgb(palette::BACKGROUND.0))?;
         draw_axes(plot, chart)
@@ -137,62 +114,68 @@ pub(super) fn draw(plot: &Plot) -> DrawingResult<Drawing> {
     // The first entry comes last, on top of others with equal figures.
     for (i, entry) in legend.iter().enumerate().rev() {
         let marks = layer(plot, |root, chart| {
-            for series in plot.series.iter().filter(|series| series.entry == **entry) {
+            for (_, points) in plot.series.iter().filter(|(other, _)| other == *entry) {
                 let offset = lane_offset(plot, i, legend.len());
-                points.extend(draw_points(plot, entry, &series.points, offset, root, chart)?.map(
-                    |(point, at)| Place {
-                        series: i,
-                        at,
-                        x: point.x,
-                        y: point.y,
-                        interval: point.interval.map(|found| [found.low, found.high]),
-                    },
-                ));
+                for (Point { x, y, interval }, at) in draw_points(plot, entry, points, offset, root, chart)? {
+                    places.push(json!({ "series": i, "at": at, "x": x, "y": y, "interval": interval }));
+                }
             }
             Ok(())
         })?;
         body += &format!("<g data-series=\"{i}\">\n{marks}</g>\n");
     }
-    let height = height(plot);
-    let svg = format!(
-        "<svg viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
-         xmlns=\"http://www.w3.org/2000/svg\">\n{body}</svg>\n"
-    );
-    let swatches = legend.iter().map(|entry| swatch(plot, entry)).collect::<DrawingResult<_>>()?;
-    Ok(Drawing { svg, swatches, points })
-}
-
-/// Draws a plot with its legend below, in two columns.
-pub(super) fn draw_document(plot: &Plot) -> DrawingResult<String> {
-    let (drawing, entries) = (draw(plot)?, plot.legend());
-    let (above, below) = (height(plot), entries.len().div_ceil(2) as u32 * ROW_HEIGHT as u32);
-    let mut legend = String::new();
-    {
-        let root = SVGBackend::with_string(&mut legend, (WIDTH, below)).into_drawing_area();
-        root.fill(&rgb(palette::BACKGROUND.0))?;
-        for (i, entry) in entries.iter().enumerate() {
-            let (column, row) = ((i % 2) as i32, (i / 2) as i32);
-            let (x, y) = (EM + column * WIDTH as i32 / 2, row * ROW_HEIGHT + ROW_HEIGHT / 2);
-            draw_mark(&root, (x, y), &palette::of(&entry.method), entry.papers)?;
-            root.draw(&Text::new(entry.label.clone(), (x + EM, y - EM / 2), text()))?;
-        }
-        root.present()?;
+    let mut size = (WIDTH, height(plot));
+    if with_legend {
+        let below = (WIDTH, legend.len().div_ceil(2) as u32 * ROW_HEIGHT as u32);
+        let entries = elements(below, |root| {
+            root.fill(&rgb(palette::BACKGROUND.0))?;
+            for (i, entry) in legend.iter().enumerate() {
+                let (column, row) = ((i % 2) as i32, (i / 2) as i32);
+                let (x, y) = (EM + column * WIDTH as i32 / 2, row * ROW_HEIGHT + ROW_HEIGHT / 2);
+                draw_mark(root, (x, y), entry)?;
+                root.draw(&Text::new(entry.label.clone(), (x + EM, y - EM / 2), text()))?;
+            }
+            Ok(())
+        })?;
+        body += &format!("<g transform=\"translate(0 {})\">\n{entries}</g>\n", size.1);
+        size.1 += below.1;
     }
-    let legend = legend.replacen("<svg ", &format!("<svg y=\"{above}\" "), 1);
-    let (plot, height) = (drawing.svg, above + below);
-    Ok(format!(
-        "<svg viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
-         xmlns=\"http://www.w3.org/2000/svg\">\n{plot}{legend}</svg>\n"
-    ))
+    Ok((document(&body, size), places))
 }
 
-fn has_intervals(plot: &Plot) -> bool {
-    plot.series.iter().flat_map(|series| &series.points).any(|point| point.interval.is_some())
+/// Returns a small document with the line and mark of an entry.
+pub(super) fn swatch(entry: &Entry, with_line: bool) -> DrawingResult<String> {
+    let size = (2 * EM as u32, EM as u32);
+    let drawn = elements(size, |root| {
+        if with_line {
+            draw_stroke(root, vec![(0, EM / 2), (2 * EM, EM / 2)], entry)?;
+        }
+        draw_mark(root, (EM, EM / 2), entry)
+    });
+    Ok(document(&drawn?, size))
+}
+
+fn document(elements: &str, (width, height): (u32, u32)) -> String {
+    format!(
+        "<svg viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+         xmlns=\"http://www.w3.org/2000/svg\">\n{elements}</svg>\n"
+    )
+}
+
+/// Returns the elements that `draw` draws, without the document around them.
+fn elements(size: (u32, u32), draw: impl FnOnce(&Area) -> DrawingResult<()>) -> DrawingResult<String> {
+    let mut svg = String::new();
+    let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+    draw(&root)?;
+    root.present()?;
+    drop(root);
+    let start = svg.find('>').map_or(0, |end| end + 1);
+    Ok(svg[start..].trim_end().trim_end_matches("</svg>").trim_start().to_owned())
 }
 
 /// Returns the height of a row, in which marks with intervals lie below each other.
 fn row_height(plot: &Plot) -> i32 {
-    let lanes = if has_intervals(plot) { plot.legend().len() as i32 + 1 } else { 0 };
+    let lanes = if plot.has_intervals() { plot.legend().len() as i32 + 1 } else { 0 };
     ROW_HEIGHT.max(lanes * LANE)
 }
 
@@ -203,35 +186,30 @@ fn height(plot: &Plot) -> u32 {
 
 /// Returns how far below the middle of its row an entry's marks lie, in SVG units.
 fn lane_offset(plot: &Plot, entry: usize, entries: usize) -> i32 {
-    if !has_intervals(plot) || plot.rows.is_empty() {
+    if !plot.has_intervals() || plot.rows.is_empty() {
         return 0;
     }
     (2 * entry as i32 - entries as i32 + 1) * LANE / 2
 }
 
-/// Returns the elements that `draw` draws on a plot's area, without the document around them.
+/// Returns the elements that `draw` draws on a plot's area.
 fn layer(plot: &Plot, draw: impl FnOnce(&Area, &mut Chart) -> DrawingResult<()>) -> DrawingResult<String> {
-    let mut svg = String::new();
-    let root = SVGBackend::with_string(&mut svg, (WIDTH, height(plot))).into_drawing_area();
-    let points = || plot.series.iter().flat_map(|series| &series.points).filter(|point| point.is_finite());
-    let ends = points().filter_map(|point| point.interval).flat_map(|found| [found.low, found.high]);
+    let points = || plot.series.iter().flat_map(|(_, points)| points).filter(|point| point.is_finite());
+    let ends = points().filter_map(|point| point.interval).flatten();
     let x = Scaled::of(&plot.x, points().map(|point| point.x).chain(ends));
     let (y, left) = match plot.rows.len() {
         0 => (Scaled::of(&plot.y, points().map(|point| point.y)), 4 * EM),
         rows => (Scaled::Rows(rows), LABEL as i32 * EM * 55 / 100),
     };
-    let mut chart = ChartBuilder::on(&root)
-        .margin(EM / 2)
-        .margin_right(EM)
-        .x_label_area_size(5 * EM / 2)
-        .y_label_area_size(left)
-        .build_cartesian_2d(x, y)?;
-    draw(&root, &mut chart)?;
-    root.present()?;
-    drop(chart);
-    drop(root);
-    let start = svg.find('>').map_or(0, |end| end + 1);
-    Ok(svg[start..].trim_end().trim_end_matches("</svg>").trim_start().to_owned())
+    elements((WIDTH, height(plot)), |root| {
+        let mut chart = ChartBuilder::on(root)
+            .margin(EM / 2)
+            .margin_right(EM)
+            .x_label_area_size(5 * EM / 2)
+            .y_label_area_size(left)
+            .build_cartesian_2d(x, y)?;
+        draw(root, &mut chart)
+    })
 }
 
 fn rgb(color: u32) -> RGBColor {
@@ -281,87 +259,59 @@ fn draw_points<'p>(
     root: &Area,
     chart: &Chart,
 ) -> DrawingResult<impl Iterator<Item = (&'p Point, (i32, i32))> + use<'p>> {
-    let look = palette::of(&entry.method);
     let at = |x: f64, y: f64| {
         let (x, y) = chart.backend_coord(&(x, y));
         (x, y + offset)
     };
     let finite: Vec<_> = points.iter().filter(|p| p.is_finite()).map(|p| (p, at(p.x, p.y))).collect();
-    if plot.style == Style::Curves && finite.len() > 1 {
-        draw_stroke(root, finite.iter().map(|(_, at)| *at).collect(), &look, entry.papers)?;
+    if plot.lines && finite.len() > 1 {
+        draw_stroke(root, finite.iter().map(|(_, at)| *at).collect(), entry)?;
     }
     for (point, place) in &finite {
-        if let Some(interval) = point.interval {
-            let bar = vec![at(interval.low, point.y), at(interval.high, point.y)];
-            draw_stroke(root, bar, &look, entry.papers)?;
+        if let Some(ends) = point.interval {
+            draw_stroke(root, ends.map(|end| at(end, point.y)).to_vec(), entry)?;
         }
-        draw_mark(root, *place, &look, entry.papers)?;
+        draw_mark(root, *place, entry)?;
     }
     Ok(finite.into_iter())
 }
 
 /// Draws the line of a method, dashed for the paper's figures.
-fn draw_stroke(root: &Area, points: Vec<(i32, i32)>, look: &Look, papers: bool) -> DrawingResult<()> {
-    let style = rgb(look.light).stroke_width(4);
-    match papers {
+fn draw_stroke(root: &Area, points: Vec<(i32, i32)>, entry: &Entry) -> DrawingResult<()> {
+    let style = rgb(palette::of(&entry.method).light).stroke_width(4);
+    match entry.papers {
         true => root.draw(&DashedPathElement::new(points, 14, 9, style)),
         false => root.draw(&PathElement::new(points, style)),
     }
 }
 
-fn style(look: &Look, papers: bool) -> ShapeStyle {
-    if papers || look.hollow { rgb(palette::BACKGROUND.0).filled() } else { rgb(look.light).filled() }
-}
-
 /// Draws the mark of a method, hollow for the paper's figures.
-fn draw_mark(root: &Area, at: (i32, i32), look: &Look, papers: bool) -> DrawingResult<()> {
-    let mut outline = outline(look, at);
-    root.draw(&Polygon::new(outline.clone(), style(look, papers)))?;
+fn draw_mark(root: &Area, at: (i32, i32), entry: &Entry) -> DrawingResult<()> {
+    let look = palette::of(&entry.method);
+    let mut outline = outline(look.shape, at);
+    let fill = if entry.papers || look.hollow { palette::BACKGROUND.0 } else { look.light };
+    root.draw(&Polygon::new(outline.clone(), rgb(fill).filled()))?;
     outline.extend_from_within(..2);
     root.draw(&PathElement::new(outline, rgb(look.light).stroke_width(4)))
 }
 
-fn outline(look: &Look, (x, y): (i32, i32)) -> Vec<(i32, i32)> {
-    let circle = || (0..20).map(|i| (f64::from(i) * std::f64::consts::PI / 10.0).sin_cos());
-    let corners: Vec<(f64, f64)> = match look.shape {
-        Shape::Circle => circle().map(|(sin, cos)| (1.1 * sin, 1.1 * cos)).collect(),
+fn outline(shape: Shape, (x, y): (i32, i32)) -> Vec<(i32, i32)> {
+    let corners: Vec<(f64, f64)> = match shape {
+        Shape::Circle => {
+            let angles = (0..20).map(|i| f64::from(i) * std::f64::consts::PI / 10.0);
+            angles.map(|angle| (1.1 * angle.sin(), 1.1 * angle.cos())).collect()
+        }
         Shape::Square => vec![(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)],
         Shape::Diamond => vec![(0.0, -1.45), (1.45, 0.0), (0.0, 1.45), (-1.45, 0.0)],
         Shape::Up => vec![(0.0, -1.35), (1.35, 1.0), (-1.35, 1.0)],
         Shape::Down => vec![(0.0, 1.35), (1.35, -1.0), (-1.35, -1.0)],
-        Shape::Cross => [
-            (-1, -3),
-            (0, -1),
-            (1, -3),
-            (3, -1),
-            (1, 0),
-            (3, 1),
-            (1, 3),
-            (0, 1),
-            (-1, 3),
-            (-3, 1),
-            (-1, 0),
-            (-3, -1),
-        ]
-        .map(|(x, y)| (0.42 * f64::from(x), 0.42 * f64::from(y)))
-        .to_vec(),
+        Shape::Cross => {
+            let x = [-1, 0, 1, 3, 1, 3, 1, 0, -1, -3, -1, -3].map(|x| 0.42 * f64::from(x));
+            (0..12).map(|i| (x[i], x[(i + 9) % 12])).collect()
+        }
     };
     let scaled = |value: f64| (value * f64::from(MARK)).round() as i32;
     corners.into_iter().map(|(dx, dy)| (x + scaled(dx), y + scaled(dy))).collect()
-}
-
-/// Returns a small document with the line and mark of an entry.
-fn swatch(plot: &Plot, entry: &Entry) -> DrawingResult<String> {
-    let (mut svg, look) = (String::new(), palette::of(&entry.method));
-    {
-        let root = SVGBackend::with_string(&mut svg, (2 * EM as u32, EM as u32)).into_drawing_area();
-        if plot.style != Style::Points || has_intervals(plot) {
-            draw_stroke(&root, vec![(0, EM / 2), (2 * EM, EM / 2)], &look, entry.papers)?;
-        }
-        draw_mark(&root, (EM, EM / 2), &look, entry.papers)?;
-        root.present()?;
-    }
-    Ok(svg)
 }
 
 fn shortened(text: &str) -> String {

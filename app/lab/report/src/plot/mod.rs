@@ -1,46 +1,30 @@
-//! Plots: values of methods over a quantity or by row, drawn as SVG by plotters.
+//! Plots: values of methods over a quantity or by row, drawn with plotters.
 
 mod draw;
 #[cfg(test)]
 mod tests;
 
+use anyhow::Context;
 use serde_json::{Value, json};
 
-use crate::Interval;
 use crate::palette::css_rules;
 use crate::stats::unique;
 
-/// The error when a plot cannot be drawn.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot draw the plot \"{title}\": {what}")]
-pub struct PlotError {
-    title: String,
-    what: String,
-}
-
 /// A plot.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
     /// The heading.
     pub title: String,
     /// A note for the reader.
     pub caption: String,
-    style: Style,
+    /// True if lines connect the points of a series.
+    lines: bool,
     x: Axis,
     y: Axis,
     /// The names of the rows from top to bottom, in place of a vertical axis.
     rows: Vec<String>,
-    /// The series; the first is drawn last, on top.
-    series: Vec<Series>,
-}
-
-/// How the points of a series are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Style {
-    /// A mark for each point, and lines between them.
-    Curves,
-    /// A mark for each point.
-    Points,
+    /// The points of entries of the legend; the first are drawn last, on top.
+    series: Vec<(Entry, Vec<Point>)>,
 }
 
 /// An axis.
@@ -49,11 +33,11 @@ pub struct Axis {
     /// The quantity and its unit.
     pub name: String,
     /// True if equal factors are equally far apart, instead of equal steps.
-    pub logarithmic: bool,
+    logarithmic: bool,
     /// Values that the axis includes in any case.
-    pub include: Vec<f64>,
+    include: Vec<f64>,
     /// Values at which a line marks a baseline or a bound.
-    pub lines_at: Vec<f64>,
+    lines_at: Vec<f64>,
 }
 
 impl Axis {
@@ -115,8 +99,8 @@ struct Point {
     x: f64,
     /// The value on the vertical axis, or the number of the row.
     y: f64,
-    /// The interval of x.
-    interval: Option<Interval>,
+    /// The ends of the interval of x.
+    interval: Option<[f64; 2]>,
 }
 
 impl Point {
@@ -125,32 +109,15 @@ impl Point {
     }
 }
 
-#[derive(Clone, Debug, PartialEq)]
-struct Series {
-    entry: Entry,
-    points: Vec<Point>,
-}
-
 impl Plot {
-    fn new(title: impl Into<String>, style: Style, x: Axis, y: Axis) -> Plot {
-        let title = title.into();
-        Plot { title, caption: String::new(), style, x, y, rows: Vec::new(), series: Vec::new() }
-    }
-
     /// Returns a plot without values of one quantity over another. [`Plot::curve`] adds values.
     pub fn curves(title: impl Into<String>, x: Axis, y: Axis) -> Plot {
-        Plot::new(title, Style::Curves, x, y)
-    }
-
-    /// Returns a plot without values of one quantity over another, without lines between them. [`Plot::curve`] adds
-    /// values.
-    pub fn points(title: impl Into<String>, x: Axis, y: Axis) -> Plot {
-        Plot::new(title, Style::Points, x, y)
+        Plot { title: title.into(), lines: true, x, y, ..Plot::default() }
     }
 
     /// Returns a plot without values that has a row for each category. [`Plot::mark`] adds values.
     pub fn rows(title: impl Into<String>, value: Axis) -> Plot {
-        Plot::new(title, Style::Points, value, Axis::default())
+        Plot { title: title.into(), x: value, ..Plot::default() }
     }
 
     /// Returns the plot with a note for the reader.
@@ -161,7 +128,7 @@ impl Plot {
     /// Adds the points of a curve, each with its x and y. Curves with equal entries share one entry of the legend.
     pub fn curve(&mut self, entry: Entry, points: impl IntoIterator<Item = (f64, f64)>) {
         let points = points.into_iter().map(|(x, y)| Point { x, y, interval: None });
-        self.series.push(Series { entry, points: points.collect() });
+        self.series.push((entry, points.collect()));
     }
 
     /// Adds a value to a row, which is appended if it is new. A value that is not finite is not drawn.
@@ -170,16 +137,12 @@ impl Plot {
     }
 
     /// Adds a value and its interval, drawn as a bar, to a row.
-    pub fn mark_interval(&mut self, row: &str, entry: Entry, value: f64, interval: Option<Interval>) {
+    pub fn mark_interval(&mut self, row: &str, entry: Entry, value: f64, interval: Option<[f64; 2]>) {
         let at = self.rows.iter().position(|name| name == row).unwrap_or_else(|| {
             self.rows.push(row.to_owned());
             self.rows.len() - 1
         });
-        let point = Point { x: value, y: at as f64, interval };
-        match self.series.iter_mut().find(|series| series.entry == entry) {
-            Some(series) => series.points.push(point),
-            None => self.series.push(Series { entry, points: vec![point] }),
-        }
+        self.series.push((entry, vec![Point { x: value, y: at as f64, interval }]));
     }
 
     /// True if there is nothing to see.
@@ -189,48 +152,49 @@ impl Plot {
 
     /// Returns every entry once: ours, then the paper's.
     pub fn legend(&self) -> Vec<&Entry> {
-        let seen = self.series.iter().filter(|series| series.points.iter().any(Point::is_finite));
-        let mut entries = unique(seen.map(|series| &series.entry));
+        let seen = self.series.iter().filter(|(_, points)| points.iter().any(Point::is_finite));
+        let mut entries = unique(seen.map(|(entry, _)| entry));
         entries.sort_by_key(|entry| entry.papers);
         entries
+    }
+
+    fn has_intervals(&self) -> bool {
+        self.series.iter().flat_map(|(_, points)| points).any(|point| point.interval.is_some())
     }
 
     /// Returns the plot with its legend as an SVG document, light or dark as its reader prefers.
     ///
     /// # Errors
-    /// [`PlotError`] if plotters refuses.
-    pub fn to_svg(&self) -> Result<String, PlotError> {
-        let svg = draw::draw_document(self).map_err(|error| self.error(&error))?;
+    /// One sentence, if plotters refuses.
+    pub fn to_svg(&self) -> anyhow::Result<String> {
         let style = format!("<style>@media (prefers-color-scheme: dark) {{{}}}</style>", css_rules());
-        Ok(svg.replacen('>', &format!(">{style}"), 1))
+        Ok(self.draw(true)?.0.replacen('>', &format!(">{style}"), 1))
     }
 
-    fn draw(&self) -> Result<draw::Drawing, PlotError> {
-        draw::draw(self).map_err(|error| self.error(&error))
-    }
-
-    fn error(&self, what: &impl ToString) -> PlotError {
-        PlotError { title: self.title.clone(), what: what.to_string() }
+    fn draw(&self, with_legend: bool) -> anyhow::Result<(String, Vec<Value>)> {
+        draw::draw(self, with_legend).with_context(|| format!("cannot draw the plot \"{}\"", self.title))
     }
 
     /// Returns what the page's template and script need: drawing, legend, and the points with their places.
-    pub(crate) fn to_page(&self) -> Result<Value, PlotError> {
-        let drawing = self.draw()?;
-        let legend = self.legend();
-        let entries = legend.iter().zip(&drawing.swatches);
-        let entries = entries.map(|(entry, swatch)| json!({ "label": entry.label, "swatch": swatch }));
+    pub(crate) fn to_page(&self) -> anyhow::Result<Value> {
+        let (svg, points) = self.draw(false)?;
+        let with_line = self.lines || self.has_intervals();
+        let entries = self
+            .legend()
+            .into_iter()
+            .map(|entry| Ok(json!({ "label": entry.label, "swatch": draw::swatch(entry, with_line)? })));
         let data = json!({
             "x": self.x.name,
             "y": self.y.name,
             "rows": self.rows,
-            "series": legend.iter().map(|entry| &entry.label).collect::<Vec<_>>(),
-            "points": drawing.points,
+            "series": self.legend().iter().map(|entry| &entry.label).collect::<Vec<_>>(),
+            "points": points,
         });
         Ok(json!({
             "title": self.title,
             "caption": self.caption,
-            "svg": drawing.svg,
-            "legend": entries.collect::<Vec<_>>(),
+            "svg": svg,
+            "legend": entries.collect::<anyhow::Result<Vec<_>>>()?,
             // A script element ends at the first "</script", wherever it is.
             "data": data.to_string().replace('<', "\\u003c"),
         }))

@@ -26,8 +26,12 @@ const FRAMES: [usize; 2] = [12, 4];
 pub struct Flicker;
 
 impl Experiment for Flicker {
-    fn name_and_help(&self) -> [&'static str; 2] {
-        ["flicker", "Flicker of the synthesized eye from frame to frame along a camera path"]
+    fn name(&self) -> &'static str {
+        "flicker"
+    }
+
+    fn about(&self) -> &'static str {
+        "Flicker of the synthesized eye from frame to frame along a camera path"
     }
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {

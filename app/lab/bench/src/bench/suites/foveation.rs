@@ -42,11 +42,12 @@ const NEAR_SILHOUETTE: usize = 3;
 pub struct Foveated;
 
 impl Experiment for Foveated {
-    fn name_and_help(&self) -> [&'static str; 2] {
-        [
-            "foveation",
-            "Frame time, shaded pixels and quality of eyes with all pixels only where they look, by two renders and by synthesis, at 60 and 90 degrees",
-        ]
+    fn name(&self) -> &'static str {
+        "foveation"
+    }
+
+    fn about(&self) -> &'static str {
+        "Frame time, shaded pixels and quality of eyes with all pixels only where they look, by two renders and by synthesis, at 60 and 90 degrees"
     }
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {

@@ -73,11 +73,12 @@ const CASES: [Case; 6] = {
 pub struct HalfRate;
 
 impl Experiment for HalfRate {
-    fn name_and_help(&self) -> [&'static str; 2] {
-        [
-            "half-rate",
-            "Quality and time of the frame between two renders, by a runtime from both eyes' motion or from one eye's",
-        ]
+    fn name(&self) -> &'static str {
+        "half-rate"
+    }
+
+    fn about(&self) -> &'static str {
+        "Quality and time of the frame between two renders, by a runtime from both eyes' motion or from one eye's"
     }
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {

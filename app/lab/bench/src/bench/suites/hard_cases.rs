@@ -29,11 +29,12 @@ const PART: f32 = 0.3;
 pub struct HardCases;
 
 impl Experiment for HardCases {
-    fn name_and_help(&self) -> [&'static str; 2] {
-        [
-            "hard-cases",
-            "Quality of the part of the image that shows it, for each thing that synthesis finds hard",
-        ]
+    fn name(&self) -> &'static str {
+        "hard-cases"
+    }
+
+    fn about(&self) -> &'static str {
+        "Quality of the part of the image that shows it, for each thing that synthesis finds hard"
     }
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {

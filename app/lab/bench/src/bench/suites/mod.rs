@@ -42,9 +42,9 @@ pub const EXPERIMENTS: [&dyn Experiment; 13] = [
 
 /// An experiment that measures frames at viewpoints.
 struct FrameSuite {
-    /// See [`Experiment::name_and_help`].
+    /// See [`Experiment::name`].
     name: &'static str,
-    /// See [`Experiment::name_and_help`].
+    /// See [`Experiment::about`].
     about: &'static str,
     measures: FrameMeasures,
     contenders: fn() -> Vec<Contender>,
@@ -59,8 +59,12 @@ const COST: FrameMeasures = FrameMeasures { cost: true, quality: false, pictures
 const ALL: FrameMeasures = FrameMeasures { cost: true, quality: true, pictures: true };
 
 impl Experiment for FrameSuite {
-    fn name_and_help(&self) -> [&'static str; 2] {
-        [self.name, self.about]
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn about(&self) -> &'static str {
+        self.about
     }
 
     fn jobs(&'static self, choices: &Choices, object: &LazyObject) -> anyhow::Result<Vec<Job>> {

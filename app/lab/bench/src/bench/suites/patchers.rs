@@ -25,8 +25,12 @@ use yoro_report::{Axis, Cell, Entry, Plot, Section, Table};
 pub struct Patchers;
 
 impl Experiment for Patchers {
-    fn name_and_help(&self) -> [&'static str; 2] {
-        ["patchers", "Quality and time of the patchers on the same reprojected images"]
+    fn name(&self) -> &'static str {
+        "patchers"
+    }
+
+    fn about(&self) -> &'static str {
+        "Quality and time of the patchers on the same reprojected images"
     }
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {

@@ -59,8 +59,12 @@ const POSES: [TargetPose; 1 + 2 * MAX_LATE] = {
 pub struct Reprojection;
 
 impl Experiment for Reprojection {
-    fn name_and_help(&self) -> [&'static str; 2] {
-        ["reprojection", "Quality of one render shown at a later pose of the head, and of canted eyes"]
+    fn name(&self) -> &'static str {
+        "reprojection"
+    }
+
+    fn about(&self) -> &'static str {
+        "Quality of one render shown at a later pose of the head, and of canted eyes"
     }
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {

@@ -39,11 +39,12 @@ const SAME_IMAGE: &str = "same image, not encoded";
 pub struct Stream;
 
 impl Experiment for Stream {
-    fn name_and_help(&self) -> [&'static str; 2] {
-        [
-            "stream",
-            "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
-        ]
+    fn name(&self) -> &'static str {
+        "stream"
+    }
+
+    fn about(&self) -> &'static str {
+        "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay"
     }
 
     fn jobs(&'static self, choices: &Choices, _: &LazyObject) -> anyhow::Result<Vec<Job>> {

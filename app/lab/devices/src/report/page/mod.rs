@@ -4,10 +4,8 @@ mod format;
 mod plots;
 mod tables;
 
-use std::fmt::Write as _;
-
 use super::run::LEAST_COVERED;
-use super::{Device, DeviceReport, Difference, Quantity, Run};
+use super::{Device, DeviceReport, Difference, Quantity};
 use format::answers;
 use plots::change_plots;
 use tables::{device_tables, notes_table, overview_tables};
@@ -28,43 +26,43 @@ fn title(report: &DeviceReport) -> String {
 
 /// Returns the mark that titles get if values are simulated.
 fn simulated_mark(report: &DeviceReport) -> &'static str {
-    if !report.simulated {
-        ""
-    } else if report.devices.iter().all(|device| device.simulated) {
-        " (simulated)"
-    } else {
-        " (partly simulated)"
+    match report.devices.iter().all(|device| device.info.simulated) {
+        _ if !report.simulated => "",
+        true => " (simulated)",
+        false => " (partly simulated)",
     }
 }
 
 fn warnings(report: &DeviceReport) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let names: Vec<&str> =
-        report.devices.iter().filter(|device| device.simulated).map(|d| d.name.as_str()).collect();
-    if !names.is_empty() {
-        warnings.push(format!(
-            "Simulated: the figures of {} come from simulated devices and say nothing about any device.",
-            names.join(", ")
-        ));
+    let simulated = report.devices.iter().filter(|device| device.info.simulated);
+    let simulated: Vec<&str> = simulated.map(|device| device.name.as_str()).collect();
+    let simulated = (!simulated.is_empty()).then(|| {
+        let names = simulated.join(", ");
+        format!(
+            "Simulated: the figures of {names} come from simulated devices and say nothing about any device."
+        )
+    });
+    let baseline = &report.baseline;
+    let without = report.devices.iter().filter(|device| !device.methods.contains(baseline)).map(|device| {
+        let name = &device.name;
+        format!("{name} has no run of {baseline}: nothing is compared there. Name another baseline, or measure one.")
+    });
+    simulated.into_iter().chain(without).collect()
+}
+
+impl Device {
+    /// Returns the scenes, and `None` for all of them.
+    fn rows(&self) -> impl Iterator<Item = Option<&str>> {
+        self.scenes.iter().map(|scene| Some(scene.as_str())).chain([None])
     }
-    for device in &report.devices {
-        if !device.methods.contains(&report.baseline) {
-            warnings.push(format!(
-                "{} has no run of {}: nothing is compared there. Name another baseline, or measure one.",
-                device.name, report.baseline
-            ));
-        }
-    }
-    warnings
 }
 
 impl DeviceReport {
     pub(super) fn report(&self) -> Report {
         let mark = simulated_mark(self);
-        let mut sections = Vec::new();
         let mut overview = Section::new(format!("Change per device{mark}"), "");
         overview_tables(self).into_iter().for_each(|table| overview.table(table));
-        sections.extend(Some(overview).filter(|overview| !overview.is_empty()));
+        let mut sections = if overview.is_empty() { vec![] } else { vec![overview] };
         for device in &self.devices {
             let mut section = Section::new(&device.name, "");
             section.text(Text::quiet(facts(self, device)));
@@ -86,21 +84,18 @@ impl DeviceReport {
 
     /// Returns the answers for a terminal.
     pub fn to_text(&self) -> String {
-        let mut out = String::new();
-        for line in warnings(self).into_iter().chain(answers(self)) {
-            let _ = writeln!(out, "{}", line.replace("**", ""));
-        }
-        let runs = self.runs.len();
+        let mut lines = [warnings(self), answers(self)].concat();
         let whole = self.runs.iter().filter(|run| run.exclusions.is_empty()).count();
-        let _ = writeln!(
-            out,
-            "{whole} of {runs} runs count in full; {} faults are named in the report.",
-            self.faults.len()
-        );
-        for note in &self.left_out {
-            let _ = writeln!(out, "{}: {} ({})", note.of, note.detail, note.name);
-        }
-        out
+        let (runs, faults) = (self.runs.len(), self.faults.len());
+        lines.push(format!("{whole} of {runs} runs count in full; {faults} faults are named in the report."));
+        lines
+            .extend(self.left_out.iter().map(|note| format!("{}: {} ({})", note.of, note.detail, note.name)));
+        lines.iter().map(|line| line.replace("**", "") + "\n").collect()
+    }
+
+    /// Returns the methods of a device that are compared with the baseline.
+    fn compared<'a>(&'a self, device: &'a Device) -> impl Iterator<Item = &'a String> {
+        device.methods.iter().filter(|method| **method != self.baseline)
     }
 
     fn find(
@@ -114,32 +109,21 @@ impl DeviceReport {
             d.device == device && d.scene.as_deref() == scene && d.method == method && d.quantity == quantity
         })
     }
-
-    fn scenes_of(&self, device: &str, method: &str, quantity: Quantity) -> usize {
-        let of = |d: &&Difference| d.device == device && d.method == method && d.quantity == quantity;
-        self.differences.iter().filter(of).filter(|d| d.scene.is_some()).count()
-    }
-
-    fn runs_of<'a>(&'a self, device: &'a Device) -> impl Iterator<Item = &'a Run> {
-        self.runs.iter().filter(|run| run.device == device.name)
-    }
 }
 
 fn facts(report: &DeviceReport, device: &Device) -> String {
-    let runs = report.runs_of(device).count();
-    let whole = report.runs_of(device).filter(|run| run.exclusions.is_empty()).count();
-    let capacity = device.capacity_mah.map(|c| format!(", battery {c:.0} mAh")).unwrap_or_default();
-    let cells = match device.cells {
-        1 => String::new(),
-        cells => format!(", current x {cells} cells"),
-    };
-    let applications: Vec<&str> = device.applications.iter().map(String::as_str).collect();
-    let application = if applications.is_empty() {
-        String::new()
-    } else {
-        format!(", application {}", applications.join(" and "))
-    };
-    format!("Android {}{capacity}{cells}{application}; {whole} of {runs} runs count in full.", device.android)
+    let runs = device.runs(&report.runs).count();
+    let whole = device.runs(&report.runs).filter(|run| run.exclusions.is_empty()).count();
+    let mut facts = format!("Android {}", device.info.android);
+    facts += &device.info.capacity_mah.map(|c| format!(", battery {c:.0} mAh")).unwrap_or_default();
+    if device.cells > 1 {
+        facts += &format!(", current x {} cells", device.cells);
+    }
+    if !device.applications.is_empty() {
+        let applications: Vec<&str> = device.applications.iter().map(String::as_str).collect();
+        facts += &format!(", application {}", applications.join(" and "));
+    }
+    format!("{facts}; {whole} of {runs} runs count in full.")
 }
 
 fn method_notes(report: &DeviceReport) -> [String; 4] {

@@ -1,8 +1,9 @@
 //! The report's plots.
 
 use super::ALL_SCENES;
+use super::format::change_format;
 use super::tables::papers_changes;
-use crate::report::{CONFIDENCE, Device, DeviceReport, Quantity};
+use crate::report::{Device, DeviceReport, Quantity};
 use yoro_report::{Axis, Entry, Plot};
 
 /// Returns plots of the changes of power, frame rate and temperature by scene, with intervals.
@@ -15,20 +16,18 @@ pub fn change_plots(report: &DeviceReport, device: &Device) -> Vec<Plot> {
 }
 
 fn change_plot(report: &DeviceReport, device: &Device, quantity: Quantity) -> Plot {
-    let unit = if quantity.is_ratio() { "%" } else { "K" };
-    let (name, mark) = (format!("{} against {}", quantity.name(), report.baseline), simulated(device));
-    let axis = Axis::new(format!("{name}, {unit}{mark}")).baseline(0.0);
+    let mark = if device.info.simulated { " (simulated)" } else { "" };
+    let name = format!("{} against {}", quantity.shown().name, report.baseline);
+    let axis = Axis::new(format!("{name}, {}{mark}", change_format(quantity).1)).baseline(0.0);
     let mut plot = Plot::rows(format!("{name}{mark}"), axis).caption(format!(
-        "Bars: {:.0} % intervals. The line is {}. Hollow: the paper's, for its own scenes and devices.",
-        100.0 * CONFIDENCE,
+        "Bars: 95 % intervals. The line is {}. Hollow: the paper's, for its own scenes and devices.",
         report.baseline
     ));
-    for scene in device.scenes.iter().map(|scene| Some(scene.as_str())).chain([None]) {
+    for scene in device.rows() {
         let row = scene.unwrap_or(ALL_SCENES);
-        for method in device.methods.iter().filter(|method| **method != report.baseline) {
+        for method in report.compared(device) {
             if let Some(ours) = report.find(&device.name, scene, method, quantity) {
-                let interval = ours.interval.map(|found| found.interval);
-                plot.mark_interval(row, Entry::ours(method), ours.change, interval);
+                plot.mark_interval(row, Entry::ours(method), ours.change, ours.interval);
             }
             let papers = papers_changes(scene, method).and_then(|papers| match quantity {
                 Quantity::Power => Some(papers[0]),
@@ -43,8 +42,4 @@ fn change_plot(report: &DeviceReport, device: &Device, quantity: Quantity) -> Pl
         }
     }
     plot
-}
-
-fn simulated(device: &Device) -> &'static str {
-    if device.simulated { " (simulated)" } else { "" }
 }
