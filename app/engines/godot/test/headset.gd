@@ -104,6 +104,7 @@ func _ready() -> void:
 	await _frames(12)
 	look.source = camera.source()
 	print("fact views %d" % interface.get_view_count())
+	await TestChoice.settle(camera)
 	var was := hold.at
 	# At an arm's length from the wall, past its right end: a fifth, two fifths and then most of the view is near, and
 	# back again.

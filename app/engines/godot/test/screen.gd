@@ -23,6 +23,7 @@ func _ready() -> void:
 	print("fact served %s" % [_served()])
 	print("fact shaders of the kit that the add-on does not use: %d" % _compiled("res://test/kit"))
 	await _case("plain")
+	await _chooses()
 	var before := _image(camera.dominant_eye)
 	await _holes("plain")
 	print("fact with rendered holes the rendered eye is as before: %s" % [before.get_data() == _image(camera.dominant_eye).get_data()])
@@ -79,6 +80,21 @@ func _ready() -> void:
 	print("fact preview %s" % [camera.preview() == null and not get_viewport().disable_3d])
 	print("fact done")
 	get_tree().quit()
+
+
+## Pictures of each way that is measured: both eyes must be Godot's own in its turn.
+func _chooses() -> void:
+	TestChoice.print_laws()
+	await TestChoice.settle(camera, func(way: int) -> void: _save("auto-%s" % YoroCamera3D.Mode.find_key(way).to_lower()))
+	var levels := 0.0
+	for eye: String in TestLevels.EYES:
+		var pair: Array = ["auto", "plain"].map(func(name: String) -> Image: return Image.load_from_file("%s/%s-both_views-%s.png" % [out, name, eye]))
+		levels = maxf(levels, pair[0].compute_image_metrics(pair[1], false).root_mean_squared)
+	print("both views in their turn: %.3f of 255 from Godot's own, root mean square" % levels)
+	# The sky's light is still being made when the first pictures are taken.
+	print("fact in its turn auto shows Godot's own eyes: %s" % [levels < 0.5])
+	camera.mode = YoroCamera3D.Mode.ONE_VIEW
+	await _frames(2)
 
 
 func _warnings() -> int:

@@ -14,6 +14,8 @@ enum Mode {
 	ONE_VIEW, ## One eye is rendered, the other one synthesized.
 	BOTH_VIEWS, ## Godot renders both eyes, as without this add-on.
 	SAME_IMAGE, ## The rendered eye is shown to both eyes: for comparison.
+	AUTO, ## One of the first two, whichever is cheaper on this device: it is measured, and [member choice] says why.
+	PROJECT, ## As the project settings say, in [i]XR > Yoro[/i].
 }
 enum Eye {
 	LEFT, ## The left eye.
@@ -49,6 +51,8 @@ enum _Drawn {
 const SHOWN_OVERRIDES := {
 	background_mode = Environment.BG_COLOR, ssao_enabled = false, ssil_enabled = false, ssr_enabled = false, sdfgi_enabled = false,
 }
+## The project setting of the mode where a camera has none of its own: 0 one view, 1 both views, 3 auto.
+const MODE_SETTING := "xr/yoro/mode"
 ## The project setting of the foveation where a camera has none of its own: 0 off, 1 low, 2 medium, 3 high.
 const FOVEATION_SETTING := "xr/yoro/foveation"
 ## The same of the holes: 0 filled, 1 rendered.
@@ -59,7 +63,7 @@ const _SWITCH_ON := 0.5
 const _SWITCH_OFF := 0.35
 
 ## How the eyes are made. Can be changed at any time.
-@export var mode := Mode.ONE_VIEW
+@export var mode := Mode.PROJECT
 ## The eye that is rendered; the other one is synthesized. People look more closely with one eye, mostly the right one.
 @export var dominant_eye := Eye.RIGHT
 ## From this distance on, in metres, nothing is missing at the outer border of the synthesized eye. The nearer it is,
@@ -94,6 +98,9 @@ const _SWITCH_OFF := 0.35
 ## Where the eyes look, as a direction in the world, such as that of an eye tracker; it may change in each frame. Zero,
 ## as while a tracker has lost the eyes, keeps the last direction from the head; before the first one, it is straight ahead.
 var gaze := Vector3.ZERO
+## What [constant Mode.AUTO] has measured and chosen. It measures again when the frames' cost or size changes, and after
+## [method YoroChoice.renew].
+var choice := YoroChoice.new()
 
 var _source: YoroSource
 var _put: YoroPut
@@ -105,16 +112,25 @@ var _environment := YoroEnvironment.new(SHOWN_OVERRIDES)
 var _compositor := Compositor.new()
 var _world_effects: Array[CompositorEffect] = []
 var _trouble := ""
+## What was warned of last: what is measured has this trouble in some turns only.
+var _warned := ""
 var _drawn := _Drawn.ALL
 var _shown_layers := 0
 ## The last gaze in the axes of the rendered eye. Images have other sizes without one.
 var _last_gaze := Vector3.ZERO
+## What was measured: another one is measured anew.
+var _shape := []
 
 
-## Returns one sentence that says why no eye is synthesized although [member mode] is not [code]BOTH_VIEWS[/code], or why
+## Returns one sentence that says why no eye is synthesized although [method way] is not [code]BOTH_VIEWS[/code], or why
 ## there is no preview; an empty text if neither is so.
 func trouble() -> String:
 	return _trouble
+
+
+## Returns how the next frame is made: one of the first three modes.
+func way() -> Mode:
+	return (choice.way() if _asked() == Mode.AUTO else _asked()) as Mode
 
 
 ## Returns the environment that both eyes are drawn with.
@@ -146,7 +162,7 @@ func foveation_strength() -> int:
 
 ## Returns whether holes of the synthesized eye are rendered.
 func renders_holes() -> bool:
-	if mode == Mode.SAME_IMAGE or debug_view == DebugView.HOLES:
+	if way() == Mode.SAME_IMAGE or debug_view == DebugView.HOLES:
 		return false
 	return ProjectSettings.get_setting(HOLES_SETTING, 0) == 1 if holes == Holes.PROJECT else holes == Holes.RENDERED
 
@@ -218,8 +234,11 @@ func _follow() -> void:
 	if fault != "":
 		_refuse(fault, "there is no preview")
 		return
-	if not in_xr or mode == Mode.BOTH_VIEWS:
+	var made := way()
+	if not in_xr or made == Mode.BOTH_VIEWS:
 		_refuse(preview().trouble if to_preview else "")
+		if in_xr or to_preview:
+			_count(made, interface.get_render_target_size() if in_xr else Vector2(preview().eyes[0].size))
 		return
 	if interface is OpenXRInterface and not _is_shown(interface):
 		# The session is paused, so nothing is visible. Godot does not draw this camera's viewport either.
@@ -228,6 +247,35 @@ func _follow() -> void:
 	if _source == null:
 		_make()
 	_draw(interface, viewport)
+	_count(made, interface.get_render_target_size())
+
+
+## Returns [member mode], or that of the project.
+func _asked() -> Mode:
+	return ProjectSettings.get_setting(MODE_SETTING, 0) if mode == Mode.PROJECT else mode
+
+
+## Counts a frame of [param pixels] that is made in the way [param made], and the last time of the GPU that is known.
+func _count(made: Mode, pixels: Vector2) -> void:
+	if _asked() != Mode.AUTO:
+		return
+	var shape := [pixels, foveation_strength(), renders_holes(), get_viewport().msaa_3d, get_viewport().scaling_3d_scale]
+	if shape != _shape:
+		_shape = shape
+		choice.renew()
+	var drawn: Array[Viewport] = [get_viewport()]
+	if _preview != null:
+		drawn.assign(preview().eyes)
+	if made == Mode.ONE_VIEW and _trouble == "":
+		drawn.append_array(source().drawn())
+		if source().opens:
+			drawn.append(source().beyond)
+	var cost := 0.0
+	for viewport in drawn:
+		var id := viewport.get_viewport_rid()
+		RenderingServer.viewport_set_measure_render_time(id, true)
+		cost += RenderingServer.viewport_get_measured_render_time_gpu(id)
+	choice.end_frame(Time.get_ticks_usec() / 1000.0, made if _trouble == "" else -1, cost)
 
 
 func _is_shown(interface: OpenXRInterface) -> bool:
@@ -283,7 +331,7 @@ func _draw(interface: XRInterface, viewport: Viewport) -> void:
 		return
 	_trouble = ""
 	_put.debug_view = debug_view
-	_put.same_image = mode == Mode.SAME_IMAGE
+	_put.same_image = way() == Mode.SAME_IMAGE
 	_latch.interface = interface
 	_latch.rendered = dominant_eye
 	_latch.apart = levels.whole.apart
@@ -306,7 +354,7 @@ func _is_near() -> bool:
 
 ## True if nearness is to be measured.
 func _watches() -> bool:
-	return near_limit > near and mode == Mode.ONE_VIEW
+	return near_limit > near and way() == Mode.ONE_VIEW
 
 
 ## Sets effects instead of the user's. To be called in each frame, since a change of [member compositor] would set that
@@ -334,7 +382,8 @@ func _draw_stereo_layers() -> void:
 
 ## Lets Godot render both eyes, and warns of [param reason] if there is one, and of what follows from it.
 func _refuse(reason: String, consequence := "Godot renders both eyes") -> void:
-	if reason != "" and reason != _trouble:
+	if reason != "" and reason != _warned:
+		_warned = reason
 		push_warning("YoroCamera3D: %s, since %s." % [consequence, reason])
 	_trouble = reason
 	_draw_all()

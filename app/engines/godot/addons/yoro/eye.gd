@@ -60,17 +60,19 @@ func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect
 
 
 ## Lets a camera show these layers. Godot culls what casts shadows by them, too, but renews the shadow maps of lamps and
-## spotlights only if something moves, or, as here, with the viewport's atlas.
+## spotlights only if something moves, or, as here, with the quadrants of the viewport's atlas.
 static func show_layers(in_viewport: Viewport, of: Camera3D, layers: int) -> void:
 	if of.cull_mask != layers:
 		of.cull_mask = layers
 		renew_shadows(in_viewport)
 
 
-## Lets a viewport draw all its shadow maps anew.
+## Lets a viewport draw all its shadow maps anew, into the same memory.
 static func renew_shadows(of: Viewport) -> void:
-	for size: int in [0, of.positional_shadow_atlas_size]:
-		RenderingServer.viewport_set_positional_shadow_atlas_size(of.get_viewport_rid(), size, of.positional_shadow_atlas_16_bits)
+	for quadrant in 4:
+		var parts: int = 1 << 2 * of.get("positional_shadow_atlas_quad_%d" % quadrant) >> 2
+		for count: int in [0, parts]:
+			RenderingServer.viewport_set_positional_shadow_atlas_quadrant_subdivision(of.get_viewport_rid(), quadrant, count)
 
 
 ## Draws an image of [param pixels], an even size, from [param at] in this frame, with the tangents left, right, up and down.

@@ -9,7 +9,10 @@ var _preview: YoroPreview
 
 
 func _enter_tree() -> void:
-	var settings := {YoroCamera3D.FOVEATION_SETTING: "Off,Low,Medium,High", YoroCamera3D.HOLES_SETTING: "Filled,Rendered"}
+	var settings := {
+		YoroCamera3D.MODE_SETTING: "One View:0,Both Views:1,Auto:3", YoroCamera3D.FOVEATION_SETTING: "Off,Low,Medium,High",
+		YoroCamera3D.HOLES_SETTING: "Filled,Rendered",
+	}
 	for setting: String in settings:
 		if not ProjectSettings.has_setting(setting):
 			ProjectSettings.set_setting(setting, 0)

@@ -82,8 +82,9 @@ func _process(_delta: float) -> void:
 	var between := Transform3D(Basis.IDENTITY, Vector3(ipd, 0.0, 0.0))
 	var levels := YoroLevels.of([frustum, frustum], between, camera.near, camera.far, camera.dominant_eye, eye,
 			camera.guard_band, camera.foveation_strength(), camera.gaze_from(camera.get_camera_transform()))
-	trouble = levels.trouble if camera.mode != YoroCamera3D.Mode.BOTH_VIEWS else ""
-	var both := levels.trouble != "" or camera.mode == YoroCamera3D.Mode.BOTH_VIEWS
+	var way := camera.way()
+	trouble = levels.trouble if way != YoroCamera3D.Mode.BOTH_VIEWS else ""
+	var both := levels.trouble != "" or way == YoroCamera3D.Mode.BOTH_VIEWS
 	_environment.follow(camera.shown_environment(), camera.cull_mask & camera.stereo_layers != 0)
 	var effects := camera.effects(false)
 	for i in 2:
@@ -107,7 +108,7 @@ func _process(_delta: float) -> void:
 		else:
 			wanted.push_front(_puts[i])
 			_puts[i].debug_view = camera.debug_view
-			_puts[i].same_image = camera.mode == YoroCamera3D.Mode.SAME_IMAGE
+			_puts[i].same_image = way == YoroCamera3D.Mode.SAME_IMAGE
 		if shown.compositor.compositor_effects != wanted:
 			shown.compositor.compositor_effects = wanted
 	if both:
