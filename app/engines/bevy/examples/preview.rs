@@ -34,6 +34,7 @@ fn choose(
     if keys.just_pressed(KeyCode::KeyM) {
         *chosen = match *chosen {
             StereoMode::Opaque => StereoMode::Finished,
+            StereoMode::Finished => StereoMode::Auto,
             _ => StereoMode::Opaque,
         };
     }

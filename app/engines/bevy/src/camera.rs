@@ -1,7 +1,9 @@
 //! Stereo cameras: the view that they render, and the cameras that belong to them.
 
 use bevy::camera::visibility::{RenderLayers, VisibilitySystems};
-use bevy::camera::{CameraMainTextureUsages, CameraUpdateSystems, ClearColorConfig, RenderTarget};
+use bevy::camera::{
+    CameraMainTextureUsages, CameraUpdateSystems, ClearColorConfig, NormalizedRenderTarget, RenderTarget,
+};
 use bevy::ecs::query::QueryData;
 use bevy::ecs::system::SystemParam;
 use bevy::light::SimulationLightSystems;
@@ -10,14 +12,15 @@ use bevy::prelude::*;
 use bevy::render::camera::NormalizedRenderTargetExt;
 use bevy::render::render_resource::{TextureFormat, TextureUsages};
 use bevy::render::texture::ManualTextureViews;
-use bevy::window::PrimaryWindow;
+use bevy::window::{Monitor, OnMonitor, PresentMode, PrimaryWindow};
+use yoro_wgpu::yoro::choice::StereoPath;
 use yoro_wgpu::yoro::eyes::{
     self, DepthConvention, DepthRange, EyeOptions, EyePair, GuardBand, Pose, StereoViews, View,
 };
 
-use crate::StereoMode;
+use crate::auto::AutoChoice;
 use crate::levels::{Foveation, Views, levels};
-use crate::plan::{Holes, Plan, Rendering};
+use crate::plan::{Holes, Plan, Rendering, StereoMode};
 use crate::projection::EyeProjection;
 use crate::shared::{EyeCamera, EyeCameras, Role, ShareSystems};
 
@@ -129,6 +132,8 @@ pub(crate) struct Eyes {
     pub(crate) views: Option<Views>,
     /// The images of the wide level and of the inset.
     pub(crate) images: [EyeImages; 2],
+    /// The images of the other way in [`StereoMode::Auto`], if it has been rendered. Other eyes' cameras are made anew.
+    spare: Option<(Arrangement, [EyeImages; 2])>,
     /// The pose among the views that the camera's `Transform` has, if it is not the head's.
     pub(crate) origin: Option<Pose>,
     far: f32,
@@ -229,6 +234,8 @@ pub(crate) struct EyesRequest<'a> {
     pub(crate) gaze: Option<Dir3>,
     pub(crate) guard_distance: f32,
     pub(crate) far: f32,
+    /// The display's refreshes per second; 0 if unknown, or if it sets no pace.
+    pub(crate) refresh_hz: f32,
     /// Format of the images that the cameras render to.
     pub(crate) format: TextureFormat,
     /// False if the other eye's camera has a target and a projection of its own, unless there is an inset.
@@ -246,6 +253,8 @@ struct Targets<'w, 's> {
     windows: Query<'w, 's, (Entity, &'static Window)>,
     primary: Query<'w, 's, Entity, With<PrimaryWindow>>,
     manual: Res<'w, ManualTextureViews>,
+    shown: Query<'w, 's, (&'static Window, &'static OnMonitor)>,
+    monitors: Query<'w, 's, &'static Monitor>,
 }
 
 impl Targets<'_, '_> {
@@ -264,12 +273,23 @@ impl Targets<'_, '_> {
         };
         Some((info.physical_size, format))
     }
+
+    /// Returns the refreshes per second of the display that sets the pace of a target, if they are known.
+    fn refresh_hz(&self, target: &RenderTarget) -> Option<f32> {
+        let target = target.normalize(self.primary.iter().next())?;
+        let NormalizedRenderTarget::Window(window) = target else { return None };
+        let (window, monitor) = self.shown.get(window.entity()).ok()?;
+        let paced = [PresentMode::AutoVsync, PresentMode::Fifo, PresentMode::FifoRelaxed];
+        let rate = self.monitors.get(monitor.0).ok()?.refresh_rate_millihertz?;
+        paced.contains(&window.present_mode).then_some(rate as f32 * 1e-3)
+    }
 }
 
 fn update_cameras(
     mut commands: Commands,
     targets: Targets,
     mut images: ResMut<Assets<Image>>,
+    mut auto: ResMut<AutoChoice>,
     mut cameras: Query<(&StereoCamera, StereoCameraParts)>,
     mut screens: Query<&mut Camera, Without<StereoCamera>>,
 ) {
@@ -280,11 +300,8 @@ fn update_cameras(
         if let Some(mut camera) = parts.eyes.screen.and_then(|entity| screens.get_mut(entity).ok()) {
             follow_order(&mut camera, &parts.camera, SCREEN_ORDER);
         }
-        let Some((size, format)) =
-            parts.eyes.output.as_ref().and_then(|output| targets.info(output, &images))
-        else {
-            continue;
-        };
+        let Some(output) = &parts.eyes.output else { continue };
+        let Some((size, format)) = targets.info(output, &images) else { continue };
         if size.x < 2 || size.y < 1 {
             continue;
         }
@@ -296,10 +313,11 @@ fn update_cameras(
             gaze: stereo.gaze,
             guard_distance: stereo.guard_distance,
             far: stereo.far,
+            refresh_hz: targets.refresh_hz(output).unwrap_or_default(),
             format,
             images: true,
         };
-        parts.arrange(&mut commands, &mut images, &request);
+        parts.arrange(&mut commands, &mut images, &mut auto, &request);
         if let Some(screen) = parts.eyes.screen.filter(|_| parts.eyes.size != size) {
             parts.eyes.size = size;
             // Bevy re-reads a camera's target when its projection changes.
@@ -381,9 +399,10 @@ impl StereoCameraPartsItem<'_, '_> {
         &mut self,
         commands: &mut Commands,
         images: &mut Assets<Image>,
+        auto: &mut AutoChoice,
         request: &EyesRequest,
     ) -> Option<Entity> {
-        let (plan, views, holes) = self.plan(request);
+        let (plan, views, holes) = self.plan(auto, request);
         let source = &views.wide.source;
         (self.eyes.views, self.eyes.far) = (Some(views), request.far);
         EyeProjection::new(source, source.frustum, request.far).replace(&mut self.projection);
@@ -398,10 +417,17 @@ impl StereoCameraPartsItem<'_, '_> {
             format: request.format,
             sizes: views.sizes(),
         };
+        let is_auto = request.mode == StereoMode::Auto;
+        let spare = self.eyes.spare.take().filter(|_| is_auto);
         if self.eyes.arrangement == Some(arrangement) {
+            self.eyes.spare = spare;
             return None;
         }
-        self.eyes.arrangement = Some(arrangement);
+        let old = self.eyes.arrangement.replace(arrangement);
+        let other_way = old.filter(|old| is_auto && old.plan != plan);
+        if is_auto && other_way.is_none() {
+            auto.scene_changed();
+        }
 
         let mut image = |view: &View| {
             let [width, height] = view.size;
@@ -413,13 +439,18 @@ impl StereoCameraPartsItem<'_, '_> {
         };
         let inset = views.inset.map(|inset| inset.views);
         let own_image = inset.is_some() || request.images && plan.has_other_camera();
-        self.eyes.images = [Some(views.wide), inset].map(|level| {
-            let level = level.as_ref();
-            EyeImages {
-                source: level.map(|level| image(&level.source)).unwrap_or_default(),
-                other: level.filter(|_| own_image).map(|level| image(&level.target)),
-            }
-        });
+        let images = match spare {
+            Some((of, images)) if of == arrangement => images,
+            _ => [Some(views.wide), inset].map(|level| {
+                let level = level.as_ref();
+                EyeImages {
+                    source: level.map(|level| image(&level.source)).unwrap_or_default(),
+                    other: level.filter(|_| own_image).map(|level| image(&level.target)),
+                }
+            }),
+        };
+        let images = std::mem::replace(&mut self.eyes.images, images);
+        self.eyes.spare = other_way.map(|way| (way, images));
         *self.target = RenderTarget::Image(self.eyes.images[0].source.clone().into());
         // Bevy re-reads a camera's target when its projection changes.
         self.projection.set_changed();
@@ -430,7 +461,7 @@ impl StereoCameraPartsItem<'_, '_> {
     }
 
     /// Returns what is done for a request, as far as it is possible, and logs what is not.
-    fn plan(&mut self, request: &EyesRequest) -> (Plan, Views, Holes) {
+    fn plan(&mut self, auto: &mut AutoChoice, request: &EyesRequest) -> (Plan, Views, Holes) {
         let pair = request.pair;
         self.eyes.gaze = request.foveation.and(request.gaze.or(self.eyes.gaze));
         let effect = self.rendering.whole_image_effect().filter(|_| request.foveation.is_some());
@@ -453,7 +484,13 @@ impl StereoCameraPartsItem<'_, '_> {
         let wanted = request.holes == Holes::Rendered && plan == Plan::Opaque;
         let filled = self.rendering.filled_holes().filter(|_| wanted).map(String::from);
         let holes = if wanted && filled.is_none() { Holes::Rendered } else { Holes::Filled };
+        if request.mode == StereoMode::Auto && self.camera.is_active {
+            auto.count(both.is_none(), request.refresh_hz);
+        }
         self.eyes.explain(self.entity, [both, unfoveated, filled]);
+        if request.mode == StereoMode::Auto && auto.chooser().path() == StereoPath::TwoViews {
+            return (Plan::Rendered, Views::rendered(&levels), Holes::Filled);
+        }
         (plan, views, holes)
     }
 

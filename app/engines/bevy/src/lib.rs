@@ -29,6 +29,7 @@
 //! With the feature `openxr`, [`XrStereoCamera`](openxr::XrStereoCamera) does the same in a headset, using
 //! bevy_mod_openxr.
 
+mod auto;
 mod camera;
 mod holes;
 mod levels;
@@ -41,6 +42,7 @@ mod shared;
 
 use bevy::prelude::*;
 
+pub use auto::AutoChoice;
 pub use camera::{Eye, StereoCamera};
 pub use levels::Foveation;
 pub use plan::{Holes, StereoMode};
@@ -54,6 +56,7 @@ pub struct YoroPlugin;
 
 impl Plugin for YoroPlugin {
     fn build(&self, app: &mut App) {
+        auto::build(app);
         camera::build(app);
         shared::build(app);
         passes::build(app);

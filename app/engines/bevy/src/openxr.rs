@@ -35,6 +35,7 @@ use bevy_mod_xr::session::{XrPreDestroySession, XrRenderSystems, XrRootTransform
 use yoro_wgpu::yoro::eyes::{EyePair, Frustum, Pose};
 use yoro_wgpu::yoro::glam;
 
+use crate::auto::AutoChoice;
 use crate::camera::{Eyes, EyesRequest, StereoCameraParts, bevy_transform, guard_band, reversed};
 use crate::levels::{Foveation, LevelViews, Views, levels};
 use crate::passes::{Levels, Place, ShownEyes, Stereo};
@@ -160,6 +161,7 @@ fn update_cameras(
     config: Res<OxrCurrentSessionConfig>,
     frame: Res<OxrFrameState>,
     mut images: ResMut<Assets<Image>>,
+    mut auto: ResMut<AutoChoice>,
     mut cameras: Query<(&XrStereoCamera, &mut Transform, StereoCameraParts)>,
     mut layers: Query<&mut XrCamera>,
 ) {
@@ -178,10 +180,11 @@ fn update_cameras(
             gaze: stereo.gaze,
             guard_distance: stereo.guard_distance,
             far: stereo.far,
+            refresh_hz: 1e9 / frame.predicted_display_period.as_nanos() as f32,
             format: config.format,
             images: false,
         };
-        let new = parts.arrange(&mut commands, &mut images, &request);
+        let new = parts.arrange(&mut commands, &mut images, &mut auto, &request);
         let Some(views) = parts.eyes.views else { continue };
         let source = views.wide.source.pose;
         (*transform, parts.eyes.origin) = (bevy_transform(&source), Some(source));

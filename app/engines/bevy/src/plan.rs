@@ -24,6 +24,10 @@ pub enum StereoMode {
     Finished,
     /// Both eyes are rendered, for comparison.
     Rendered,
+    /// `Opaque` or `Rendered`, whichever is cheaper here: [`AutoChoice`](crate::AutoChoice) measures both in turns for about a second,
+    /// and again when that may have changed. It compares the GPU's times for a frame, or the times between frames on devices
+    /// without timestamps. With foveation both ways have the same levels, as Bevy's own two renders would have here.
+    Auto,
 }
 
 /// What becomes of what near objects hide from the rendered eye, in [`StereoMode::Opaque`].
@@ -86,10 +90,10 @@ impl RenderingItem<'_, '_> {
     pub(crate) fn plan(&self, mode: StereoMode) -> Result<Plan, &'static str> {
         match mode {
             StereoMode::Rendered => Ok(Plan::Rendered),
-            StereoMode::Opaque if self.jitter => {
+            StereoMode::Opaque | StereoMode::Auto if self.jitter => {
                 Err("a synthesized eye has no history for temporal anti-aliasing; use StereoMode::Finished")
             }
-            StereoMode::Opaque => Ok(Plan::Opaque),
+            StereoMode::Opaque | StereoMode::Auto => Ok(Plan::Opaque),
             StereoMode::Finished => Ok(Plan::Finished),
         }
     }

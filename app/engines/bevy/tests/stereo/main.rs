@@ -1,5 +1,6 @@
 //! Compares both modes with a second camera of Bevy's, on any device that wgpu finds.
 
+mod auto;
 mod holes;
 mod levels;
 #[path = "../../examples/support/mod.rs"]
