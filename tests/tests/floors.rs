@@ -27,8 +27,8 @@ const MANIFESTS: [&str; 2] = ["Cargo.toml", "app/engines/bevy/Cargo.toml"];
 const LINES: [(&str, f64); 10] = [
     ("app/engines", 40.8),
     ("app/base", 10.8),
-    ("app/vr", 29.3),
-    ("app/lab", 18.3),
+    ("app/vr", 29.4),
+    ("app/lab", 18.4),
     ("app/program", 6.2),
     ("android", 4.7),
     ("scenes", 12.9),
