@@ -25,7 +25,7 @@ const MANIFESTS: [&str; 2] = ["Cargo.toml", "app/engines/bevy/Cargo.toml"];
 /// Thousands of lines of Rust that each floor may have. Room for a new thing is made by an old one; a change that needs more
 /// changes this table, and its commit says why.
 const LINES: [(&str, f64); 10] = [
-    ("app/engines", 40.8),
+    ("app/engines", 40.9),
     ("app/base", 10.8),
     ("app/vr", 29.4),
     ("app/lab", 18.4),

@@ -11,6 +11,9 @@ use bevy::render::{Extract, ExtractSchedule, RenderApp};
 use yoro_wgpu::wgpu::{self, BufferUsages, Features};
 use yoro_wgpu::yoro::choice::{Aim, Choice, Chooser, Cost, FrameEnd, StereoPath};
 
+/// A frame's number, and the GPU's time for it in milliseconds.
+type FrameTime = (u64, f32);
+
 /// The choice of [`StereoMode::Auto`](crate::StereoMode::Auto): one for all cameras in this mode, since a frame's time is
 /// that of all of them. [`StereoPath::Synthesis`] stands for [`StereoMode::Opaque`](crate::StereoMode::Opaque).
 #[derive(Resource)]
@@ -20,8 +23,8 @@ pub struct AutoChoice {
     /// The number of the frame in preparation, and what is known of it if a camera counts.
     frame: u64,
     end: Option<FrameEnd>,
-    /// The GPU's times in milliseconds for frames of these numbers, from the render world.
-    times: (Sender<(u64, f32)>, SyncCell<Receiver<(u64, f32)>>),
+    /// From the render world.
+    times: (Sender<FrameTime>, SyncCell<Receiver<FrameTime>>),
 }
 
 impl AutoChoice {
@@ -82,7 +85,7 @@ fn end_frame(mut auto: ResMut<AutoChoice>, time: Res<Time<Real>>) {
 
 /// The number of the frame that is rendered, and where its time is sent, if that is of interest.
 #[derive(Resource)]
-struct TimedFrame(Option<(u64, Sender<(u64, f32)>)>);
+struct TimedFrame(Option<(u64, Sender<FrameTime>)>);
 
 /// Measures the GPU's time for a frame, by the first and the last of its commands.
 fn time_frame(

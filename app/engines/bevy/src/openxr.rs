@@ -160,8 +160,7 @@ fn update_cameras(
     views: Res<OxrViews>,
     config: Res<OxrCurrentSessionConfig>,
     frame: Res<OxrFrameState>,
-    mut images: ResMut<Assets<Image>>,
-    mut auto: ResMut<AutoChoice>,
+    (mut images, mut auto): (ResMut<Assets<Image>>, ResMut<AutoChoice>),
     mut cameras: Query<(&XrStereoCamera, &mut Transform, StereoCameraParts)>,
     mut layers: Query<&mut XrCamera>,
 ) {

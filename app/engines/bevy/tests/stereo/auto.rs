@@ -19,8 +19,8 @@ fn auto_shows_either_way_in_turns_and_takes_the_cheaper_one() {
     let mut stage = Stage::new();
     let named = [StereoMode::Rendered, StereoMode::Opaque].map(|mode| stage.in_mode(mode));
     let before = held(&mut stage);
-    let step = std::time::Duration::from_millis(200);
-    stage.app.insert_resource(TimeUpdateStrategy::ManualDuration(step));
+    // A frame every 0.2 s.
+    stage.app.insert_resource(TimeUpdateStrategy::FixedTimesteps(13));
     stage.stereo().mode = StereoMode::Auto;
 
     let (mut frames, mut kept) = ([0; 2], None);
