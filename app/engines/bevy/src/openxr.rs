@@ -193,9 +193,10 @@ fn update_cameras(
             layer.0 = index;
         }
         if let Some(other) = new {
+            let projection_matrix = clip_from_view(&views.wide.target);
             commands.entity(other).insert((
                 XrCamera(index),
-                Projection::custom(XrProjection { near: stereo.near, ..default() }),
+                Projection::custom(XrProjection { projection_matrix, near: stereo.near }),
                 RenderTarget::TextureView(ManualTextureViewHandle(XR_TEXTURE_INDEX + index)),
                 bevy_transform(&views.wide.target.pose),
             ));
