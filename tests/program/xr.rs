@@ -602,8 +602,9 @@ fn four_views_are_submitted_where_the_runtime_has_insets() {
             assert_eq!(view.depth.as_ref().unwrap().image.rect, view.image.rect);
         }
         let lefts: Vec<f32> = views.iter().map(|(_, views)| views[2].fov_degrees[0]).collect();
-        // The gaze rests until there has been a picture.
-        let moves = lefts[0] <= lefts[1] && lefts[1..].is_sorted_by(|a, b| a < b);
+        // The gaze rests until there has been a picture, which takes a busy machine some frames.
+        let rests = lefts.iter().take_while(|left| **left == lefts[0]).count();
+        let moves = lefts.len() - rests >= 6 && lefts[rests - 1..].is_sorted_by(|a, b| a < b);
         assert!(moves, "the inset follows the gaze: {lefts:?}");
         let [real, made] =
             [real, made].map(|run| [0, 1, 2, 3].map(|i| run.picture(&format!("view-{i}.png"))));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::thread::{Scope, ScopedJoinHandle};
 
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::{Context as _, anyhow};
 
 use crate::maintain::estimate::Compilers;
 
@@ -44,8 +44,9 @@ impl Item {
 }
 
 static ITEMS: [Item; 15] = [
-    item("the page", "WEB", "yoro-cli web::", page_can_be_built).built(|| web::build().and(this_program())),
-    item("the example of yoro-wgpu", "WGPU_WEB", "yoro-wgpu the_example_in_a_browser", page_can_be_built)
+    item("the page", "WEB", "yoro-cli web::", web::ready_for_tests)
+        .built(|| web::build().and(this_program())),
+    item("the example of yoro-wgpu", "WGPU_WEB", "yoro-wgpu the_example_in_a_browser", web::ready_for_tests)
         .built(|| web::build_example().and(this_program())),
     item("the WebXR emulator", "WEBXR", "yoro-cli web::; yoro-three-tests headsets", web::emulator),
     item("three.js", "THREE", "yoro-three-tests ", web::three_modules),
@@ -73,10 +74,6 @@ static ITEMS: [Item; 15] = [
 
 fn this_program() -> anyhow::Result<PathBuf> {
     Ok(std::env::current_exe()?)
-}
-
-fn page_can_be_built() -> anyhow::Result<PathBuf> {
-    if web::can_be_built() { Ok(PathBuf::new()) } else { bail!("no Rust can compile for browsers") }
 }
 
 /// True if a test needs any of the items.

@@ -12,9 +12,10 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail, ensure};
 
+use crate::apt::Need;
 use crate::folders::{copy, remove, root, target_folder, write};
-use crate::rust::{Panic, Rust, anonymous_paths, build_std};
-use crate::{cargo, console, notices};
+use crate::rust::{Panic, Rust, anonymous_paths, build_std, source};
+use crate::{apt, cargo, console, notices};
 
 pub use npm::{check_types, emulator, npm, three as three_modules};
 pub use serve::serve;
@@ -110,8 +111,18 @@ pub fn build_once() -> anyhow::Result<PathBuf> {
 }
 
 /// True if Rust and a linker for WebAssembly are available.
-pub fn can_be_built() -> bool {
+fn can_be_built() -> bool {
     Rust::for_target(TRIPLE).is_some_and(|(rust, _)| rust.wasm_linker().is_some())
+}
+
+/// Installs what is missing to build the page.
+pub fn ready_for_tests() -> anyhow::Result<PathBuf> {
+    if !can_be_built() {
+        let source = || source(Rust::with_source().as_ref());
+        apt::install_missing(|| vec![source(), Need::program("wasm-ld", &["lld"])], true)?;
+    }
+    ensure!(can_be_built(), "no Rust can compile for browsers");
+    Ok(PathBuf::new())
 }
 
 /// Compiles a module, and returns its path.

@@ -14,8 +14,8 @@ pub(super) const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
 const SPLIT_ABOVE: usize = 4096;
 /// Neighbouring parts are gathered into one cluster up to this many triangles.
 const GATHER_UP_TO: usize = 512;
-/// The largest number of triangles in a box of [`Clusters::blended`].
-const BLENDED_IN_BOX: usize = 16;
+/// The largest number of a material's boxes in [`Clusters::blended`].
+const BOXES: usize = 256;
 
 /// A run of indices of one material that is compact in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ pub struct Clusters {
     pub clusters: Vec<Cluster>,
     /// One batch for each material in use, ordered by material.
     pub batches: Vec<Batch>,
-    /// Boxes around a few blended triangles each, which together contain all of them.
+    /// Boxes that together contain all blended triangles, and little else.
     pub blended: Vec<Bounds>,
     /// The model's indices in the order of the clusters.
     pub indices: Vec<u32>,
@@ -84,7 +84,7 @@ pub fn build(model: &Model) -> Clusters {
         gather_units(model, &mut units, &triangles, &mut built);
         built.batches.push(Batch { material, clusters: first..built.clusters.len(), moves: false });
         if matches!(model.materials[material].alpha, Alpha::Blend(_)) {
-            enclose(model, &mut triangles, &mut built.blended);
+            built.blended.extend(enclose(model, std::mem::take(&mut triangles)));
         }
     }
     built
@@ -118,27 +118,29 @@ fn split_triangles(model: &Model, triangles: &mut [u32], first: usize, units: &m
     split_triangles(model, triangles, first + middle, units);
 }
 
-/// Appends boxes around a few triangles each. Triangles with much space between them get boxes of their own.
-fn enclose(model: &Model, triangles: &mut [u32], boxes: &mut Vec<Bounds>) {
-    let surface = |bounds: Bounds| {
+/// Returns boxes around triangles, [`BOXES`] at most: the largest one is halved again and again.
+fn enclose(model: &Model, triangles: Vec<u32>) -> Vec<Bounds> {
+    let surface = |bounds: &Bounds| {
         let size = bounds.max - bounds.min;
         size.dot(size.yzx())
     };
-    let bounds = bounds_of(model, triangles);
-    let axis = (bounds.max - bounds.min).max_position();
-    let center = |t: u32| corners(model, t).map(|v| v.position[axis]).sum::<f32>() / 3.0;
-    triangles.sort_unstable_by_key(|&t| ordered(center(t)));
-    let middle = triangles.partition_point(|&t| center(t) < bounds.center()[axis]);
-    let (low, high) = triangles.split_at_mut(middle);
-    let is_split = !low.is_empty() && !high.is_empty();
-    let are_far_apart =
-        || surface(bounds_of(model, low)) + surface(bounds_of(model, high)) < 0.5 * surface(bounds);
-    if is_split && (low.len() + high.len() > BLENDED_IN_BOX || are_far_apart()) {
-        enclose(model, low, boxes);
-        enclose(model, high, boxes);
-    } else {
-        boxes.push(bounds);
+    let mut boxes = vec![(bounds_of(model, &triangles), triangles)];
+    while boxes.len() < BOXES {
+        let several = boxes.iter().enumerate().filter(|(_, (_, triangles))| triangles.len() > 1);
+        let largest = several.max_by(|(_, (a, _)), (_, (b, _))| surface(a).total_cmp(&surface(b)));
+        let Some((at, _)) = largest else { break };
+        let (bounds, whole) = boxes.swap_remove(at);
+        let axis = (bounds.max - bounds.min).max_position();
+        let center = |t: u32| corners(model, t).map(|v| v.position[axis]).sum::<f32>() / 3.0;
+        let middle = bounds.center()[axis];
+        let (mut low, mut high): (Vec<u32>, Vec<u32>) = whole.into_iter().partition(|&t| center(t) < middle);
+        if low.is_empty() || high.is_empty() {
+            low.append(&mut high);
+            high = low.split_off(low.len() / 2);
+        }
+        boxes.extend([low, high].map(|half| (bounds_of(model, &half), half)));
     }
+    boxes.into_iter().map(|(bounds, _)| bounds).collect()
 }
 
 /// Maps a finite float to an integer; the integers sort as the floats do.

@@ -288,8 +288,9 @@ impl GpuScene {
                 let pixel = (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * size;
                 (low, high) = (low.min(pixel), high.max(pixel));
             }
-            let first = low.floor().clamp(Vec2::ZERO, size).as_uvec2();
-            let end = high.ceil().clamp(Vec2::ZERO, size).as_uvec2();
+            // One pixel more on each side, since a GPU rounds in another way.
+            let first = (low - 1.0).floor().clamp(Vec2::ZERO, size).as_uvec2();
+            let end = (high + 1.0).ceil().clamp(Vec2::ZERO, size).as_uvec2();
             if first.cmplt(end).all() {
                 region.add(Rectangle { origin: first.to_array(), size: (end - first).to_array() });
             }
