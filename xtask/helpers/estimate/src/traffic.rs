@@ -63,11 +63,15 @@ impl Assumed {
                     let reading = meshes().filter(|draw| has_map(draw, uniform));
                     return reading.map(|draw| fragments(pass, draw)).sum();
                 }
-                // A pass with several draw calls declares an image for each, or one for all of them.
-                let of_image = pass.draws.iter().find(|draw| draw.area == image.size);
-                let largest = || pass.draws.iter().max_by(|a, b| pixels(a.area).total_cmp(&pixels(b.area)));
+                // A pass with several draw calls declares an image for each, or they cover what is written together.
+                let areas = || pass.draws.iter().map(|draw| draw.area);
+                let covered = areas().map(pixels).sum::<f64>();
+                let whole = pass.declaration.writes.first().map(|write| write.image.size);
+                let area = areas().find(|area| *area == image.size);
+                let area = area.or_else(|| whole.filter(|size| pixels(*size) == covered));
+                let area = area.or_else(|| areas().max_by(|a, b| pixels(*a).total_cmp(&pixels(*b))));
                 let share = if name == MARCH && uniform == "depth_map" { 1.0 - self.laws } else { 1.0 };
-                share * of_image.or_else(largest).map_or(0.0, |draw| once(image, draw))
+                share * area.map_or(0.0, |area| once(image, area))
             }
         }
     }
@@ -86,9 +90,9 @@ fn pixels(size: [u32; 2]) -> f64 {
 
 /// Returns the number of texels that are read by a triangle that covers the view. The texture may hold two views side by
 /// side, and may be larger or smaller than the view.
-fn once(image: &Image, draw: &RecordedDraw) -> f64 {
-    let scale = f64::from(image.size[1]) / f64::from(draw.area[1].max(1));
-    let part = [0, 1].map(|i| f64::from(image.size[i]).min(f64::from(draw.area[i]) * scale));
+fn once(image: &Image, area: [u32; 2]) -> f64 {
+    let scale = f64::from(image.size[1]) / f64::from(area[1].max(1));
+    let part = [0, 1].map(|i| f64::from(image.size[i]).min(f64::from(area[i]) * scale));
     part[0] * part[1]
 }
 
@@ -164,10 +168,9 @@ pub mod tests {
         assert_eq!(vertex_bytes(&pass("surfaces", "a.frag", MESH, &[])), 4.0 * 32.0 + 6.0 * 4.0);
         // A view beside another is half of the texture, and a small texture is read in full.
         let wide = Image { size: [20, 4], ..map };
-        let draw = &pass("screen", "a.frag", Shape::Screen, &[]).draws[0];
-        assert_eq!(once(&wide, draw), PIXELS);
-        assert_eq!(once(&Image { size: [20, 8], ..wide }, draw), 4.0 * PIXELS);
-        assert_eq!(once(&Image { size: [5, 2], ..wide }, draw), 10.0);
+        assert_eq!(once(&wide, SIZE), PIXELS);
+        assert_eq!(once(&Image { size: [20, 8], ..wide }, SIZE), 4.0 * PIXELS);
+        assert_eq!(once(&Image { size: [5, 2], ..wide }, SIZE), 10.0);
         let carried = pass("march", "a.frag", Shape::Screen, &[("depth_map", image(Format::Rg16F, 1))]);
         let simulated = Assumed { depth_in_16_bits: true, ..Assumed::default() };
         assert_eq!(Assumed::default().bytes(&carried) - simulated.bytes(&carried), 2.0 * PIXELS);
