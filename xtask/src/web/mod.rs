@@ -118,8 +118,8 @@ fn can_be_built() -> bool {
 /// Installs what is missing to build the page.
 pub fn ready_for_tests() -> anyhow::Result<PathBuf> {
     if !can_be_built() {
-        let source = || source(Rust::with_source().as_ref());
-        apt::install_missing(|| vec![source(), Need::program("wasm-ld", &["lld"])], true)?;
+        let needs = || vec![source(Rust::with_source().as_ref()), Need::program("wasm-ld", &["lld"])];
+        apt::install_missing(needs, true)?;
     }
     ensure!(can_be_built(), "no Rust can compile for browsers");
     Ok(PathBuf::new())

@@ -22,11 +22,11 @@ pub enum StereoMode {
     /// The finished image is synthesized. This is the cheapest mode, and works with temporal anti-aliasing. Transparent
     /// objects move with what is behind them, and highlights with their surface.
     Finished,
-    /// Both eyes are rendered, for comparison.
+    /// Both eyes are rendered.
     Rendered,
-    /// `Opaque` or `Rendered`, whichever is cheaper here: [`AutoChoice`](crate::AutoChoice) measures both in turns for about a second,
-    /// and again when that may have changed. It compares the GPU's times for a frame, or the times between frames on devices
-    /// without timestamps. With foveation both ways have the same levels, as Bevy's own two renders would have here.
+    /// `Opaque` or `Rendered`, whichever is cheaper here: [`AutoChoice`](crate::AutoChoice) measures both in turns for
+    /// about a second, and again when that may have changed. It compares the GPU's times for a frame, or the times
+    /// between frames on devices without timestamps. With foveation both ways have the same levels.
     Auto,
 }
 

@@ -6,7 +6,6 @@ use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
 
 use crate::palette::css_rules;
 use crate::pictures::ENCODINGS;
-use crate::text::escaped;
 use crate::{Block, Picture, Report};
 
 /// The largest number of bytes of all pictures on a page.
@@ -95,8 +94,9 @@ fn encode_pictures(report: &Report, budget: usize) -> anyhow::Result<(Vec<String
 
 /// Returns a text as HTML: `**` encloses what is important, a backquote what a computer reads.
 fn markup(text: &str) -> Value {
+    let escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     let bold = |text: &str| enclosed(text, "**", "b", str::to_owned);
-    Value::from_safe_string(enclosed(&escaped(text), "`", "code", bold))
+    Value::from_safe_string(enclosed(&escaped, "`", "code", bold))
 }
 
 /// Returns a text with a tag around every second part between two marks.

@@ -14,8 +14,8 @@ pub(super) const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
 const SPLIT_ABOVE: usize = 4096;
 /// Neighbouring parts are gathered into one cluster up to this many triangles.
 const GATHER_UP_TO: usize = 512;
-/// The largest number of a material's boxes in [`Clusters::blended`].
-const BOXES: usize = 256;
+/// The largest number of a material's boxes in [`Clusters::blended_boxes`].
+const MAX_BOXES: usize = 256;
 
 /// A run of indices of one material that is compact in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,7 @@ pub struct Clusters {
     /// One batch for each material in use, ordered by material.
     pub batches: Vec<Batch>,
     /// Boxes that together contain all blended triangles, and little else.
-    pub blended: Vec<Bounds>,
+    pub blended_boxes: Vec<Bounds>,
     /// The model's indices in the order of the clusters.
     pub indices: Vec<u32>,
 }
@@ -63,7 +63,7 @@ pub fn build(model: &Model) -> Clusters {
     let mut built = Clusters {
         clusters: Vec::new(),
         batches: Vec::new(),
-        blended: Vec::new(),
+        blended_boxes: Vec::new(),
         indices: Vec::with_capacity(model.indices.len()),
     };
     // First indices of triangles, sorted within each part.
@@ -84,7 +84,7 @@ pub fn build(model: &Model) -> Clusters {
         gather_units(model, &mut units, &triangles, &mut built);
         built.batches.push(Batch { material, clusters: first..built.clusters.len(), moves: false });
         if matches!(model.materials[material].alpha, Alpha::Blend(_)) {
-            built.blended.extend(enclose(model, std::mem::take(&mut triangles)));
+            built.blended_boxes.extend(enclose(model, std::mem::take(&mut triangles)));
         }
     }
     built
@@ -118,14 +118,14 @@ fn split_triangles(model: &Model, triangles: &mut [u32], first: usize, units: &m
     split_triangles(model, triangles, first + middle, units);
 }
 
-/// Returns boxes around triangles, [`BOXES`] at most: the largest one is halved again and again.
+/// Returns boxes around triangles, [`MAX_BOXES`] at most: the largest one is halved again and again.
 fn enclose(model: &Model, triangles: Vec<u32>) -> Vec<Bounds> {
     let surface = |bounds: &Bounds| {
         let size = bounds.max - bounds.min;
         size.dot(size.yzx())
     };
     let mut boxes = vec![(bounds_of(model, &triangles), triangles)];
-    while boxes.len() < BOXES {
+    while boxes.len() < MAX_BOXES {
         let several = boxes.iter().enumerate().filter(|(_, (_, triangles))| triangles.len() > 1);
         let largest = several.max_by(|(_, (a, _)), (_, (b, _))| surface(a).total_cmp(&surface(b)));
         let Some((at, _)) = largest else { break };
@@ -295,7 +295,7 @@ mod tests {
             }
         }
         assert!(expected.is_empty());
-        let is_blended = |position| built.blended.iter().any(|bounds| bounds.distance(position) == 0.0);
+        let is_blended = |position| built.blended_boxes.iter().any(|bounds| bounds.distance(position) == 0.0);
         let blended =
             model.parts.iter().filter(|part| part.material == 0).flat_map(|part| part.indices.clone());
         assert!(blended.into_iter().all(|i| is_blended(model.vertices[model.indices[i] as usize].position)));

@@ -204,6 +204,9 @@ impl Renderer {
     ) -> Result<(), GlError> {
         let Some(region) = scene.transparent_region(view) else { return Ok(()) };
         let parts = || region.rectangles().filter_map(|part| part.within(&shown));
+        if parts().next().is_none() {
+            return Ok(());
+        }
         let framebuffer = targets.fit_over(view.size)?.framebuffer;
         let place = |Rectangle { origin, size }| Destination { framebuffer, origin, size };
         let picture = targets.picture().1;

@@ -167,8 +167,7 @@ impl GpuScene {
             if reached.is_empty() { still } else { still.including(reached.min).including(reached.max) };
         let triangle_count = model.triangle_count();
         let mut moving = Moving::take(gl, &mut model, motion)?;
-        let cluster::Clusters { mut clusters, mut batches, blended: blended_boxes, indices } =
-            cluster::build(&model);
+        let cluster::Clusters { mut clusters, mut batches, blended_boxes, indices } = cluster::build(&model);
         if let Some(moving) = &mut moving {
             moving.append(&mut clusters, &mut batches);
         }
