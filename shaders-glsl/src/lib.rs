@@ -79,6 +79,7 @@ static APP: &[File] = embed![
     "render/bloom_down.frag",
     "render/bloom_up.frag",
     "render/composite.frag",
+    "render/curtain.vert",
     "render/depth_copy.frag",
     "render/depth_write.frag",
     "render/fill.frag",

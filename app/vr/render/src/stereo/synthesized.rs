@@ -9,7 +9,8 @@ use super::options::{HoleMethod, Pipeline, PipelineOptions, StereoOptions};
 use super::overlay::{OverlayPass, OverlaySurfaces};
 use super::pipeline::Synthesis;
 use crate::view::{
-    DepthResolve, GpuScene, HoleSource, InkedHoles, Layout, Rectangle, RenderedDepth, Renderer, Targets,
+    DepthResolve, GpuScene, HoleSource, InkedHoles, Known, Layout, Rectangle, RenderedDepth, Renderer,
+    Targets,
 };
 use yoro::eyes::{Eye, SynthesisViews, ViewLayer};
 use yoro::opengl::{Bloom, Gather, GuessedDepth, Options, Outputs, Part, Source};
@@ -158,7 +159,9 @@ impl StereoMethod for Synthesized {
         let Some(Made { targets, over, inked, synthesizers, guess }) = &mut self.made else {
             return Ok(false);
         };
-        let is_shown = renderer.draw_source(targets, &frame.scene, &views.source, shown.as_ref())?;
+        // Filled holes take their colours from beyond the border, too.
+        let known = if renders_holes { Known::Border(&views.warp) } else { Known::Nothing };
+        let is_shown = renderer.draw_source(targets, &frame.scene, &views.source, known, shown.as_ref())?;
         let is_composited = composites_first && renderer.has_composite();
         if is_composited {
             let to = Destination::whole(targets.complete_picture(views.source.size)?);

@@ -12,7 +12,7 @@ use super::lit::LitScene;
 use super::renderer::{Renderer, Resolve};
 use super::scene::{FREE_UNIT, GpuScene};
 use super::targets::Targets;
-use yoro::eyes::{View, Warp};
+use yoro::eyes::{DisparityMap, Eye, View, Warp};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Image, MultisampleTarget, Program, RasterState,
     RenderTarget, ShaderSource, StencilTest,
@@ -20,6 +20,9 @@ use yoro_gl::{
 
 /// Depth, with the stencil that tells holes: 0 in a hole, 1 elsewhere.
 pub(crate) const MARKED_DEPTH: Format = Format::Depth32FStencil8;
+
+/// Distance in pixels from the other eye's border at which surfaces are hidden: farther than outlines and silhouettes reach.
+const CURTAIN_MARGIN: f64 = 4.0;
 
 /// The rendered view, whose bloom the other eye's holes get.
 #[derive(Clone, Copy)]
@@ -35,11 +38,34 @@ impl Renderer {
         for samples in [1, msaa].into_iter().take(1 + usize::from(msaa > 1)) {
             self.prepare_variant(scene, Variant { holes: true, ..Variant::plain(samples) })?;
         }
+        if self.curtain.is_none() {
+            let source = ShaderSource::Raster { vertex: "render/curtain.vert", fragment: "render/fill.frag" };
+            self.curtain = Some(Program::new(&self.gl, source, &[])?);
+        }
         if self.ink {
             let samples = self.inked_samples();
             self.prepare_resolve(Resolve { samples, ink: true, depth: true, holes: true, layer: false })?;
         }
         Ok(())
+    }
+
+    /// Hides surfaces in the bound view that lie beyond the border of the other eye, which only the guard band would show.
+    pub(super) fn draw_curtain(&self, warp: &Warp) {
+        let (Some(program), DisparityMap { offset, scale }) = (&self.curtain, warp.law) else { return };
+        let [source, target] = [warp.source_size, warp.target_size].map(|size| f64::from(size[0]));
+        let border = match warp.target_eye {
+            Eye::Left => -CURTAIN_MARGIN,
+            Eye::Right => target + CURTAIN_MARGIN,
+        };
+        // The depth in each column of what lands at the border; without disparity, there is none.
+        let [left, right] = [0.0, source].map(|column| 2.0 * (border - column - offset) / scale - 1.0);
+        if !(left.is_finite() && right.is_finite()) {
+            return;
+        }
+        self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+        self.gl.mask_colors([false; 4]);
+        program.bind().set("curtain", Vec2::new(left as f32, (right - left) as f32));
+        self.gl.draw_screen();
     }
 
     /// True if outlines are drawn in holes, too, by [`Renderer::ink_holes`].

@@ -37,7 +37,7 @@ pub use depth::{DepthCopy, DepthImage, DepthResolve};
 pub(crate) use holes::{HoleSource, InkedHoles, MARKED_DEPTH};
 pub(crate) use layout::{Layout, Seam};
 pub(crate) use lit::LitScene;
-pub(crate) use passes::Reprojection;
+pub(crate) use passes::{Known, Reprojection};
 pub use read_back::{DepthReader, ViewReader};
 pub(crate) use rectangle::{Rectangle, Region};
 pub use renderer::{RenderedView, Renderer, ViewTargets};

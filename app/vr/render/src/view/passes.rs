@@ -18,7 +18,7 @@ use super::shadow::ShadowMap;
 use super::targets::{Onto, Targets};
 use super::uniforms::{nearer, set_view, view_rays};
 use crate::stereo::EyeTarget;
-use yoro::eyes::{DisparityMap, Eye, View};
+use yoro::eyes::{DisparityMap, Eye, View, Warp};
 use yoro_gl::{DepthTest, Destination, Format, GlError, Image, Pass, Program, RasterState, Texture};
 
 /// The light in the views of a frame.
@@ -68,6 +68,16 @@ pub(crate) struct Reprojection<'a> {
     pub half_pixel: f32,
 }
 
+/// What is known of the other eye while a view is drawn.
+#[derive(Clone, Copy)]
+pub(crate) enum Known<'a> {
+    Nothing,
+    /// The dominant eye's colours, which are taken where it sees the surface.
+    Colors(&'a Reprojection<'a>),
+    /// How the view is displaced to the other eye, which sees nothing beyond its border.
+    Border(&'a Warp),
+}
+
 impl Renderer {
     /// Returns the light of the views in an image of this layout, for positions relative to the first view.
     pub(super) fn illuminate<'a>(
@@ -100,30 +110,34 @@ impl Renderer {
         views: &[View],
         surfaces: &Surfaces,
     ) {
-        self.draw_on_sky_as(targets, scene, views, surfaces, None);
+        self.draw_on_sky_as(targets, scene, views, surfaces, Known::Nothing);
     }
 
-    /// Like [`Renderer::draw_on_sky`]; takes the dominant eye's colours where it sees the surface.
-    fn draw_on_sky_as(
+    /// Like [`Renderer::draw_on_sky`], with what is known of the other eye.
+    pub(super) fn draw_on_sky_as(
         &self,
         targets: &mut Targets,
         scene: &LitScene,
         views: &[View],
         surfaces: &Surfaces,
-        from: Option<&Reprojection>,
+        known: Known,
     ) {
         let view = &views[0];
         let light = self.illuminate(targets.layout, scene, views);
         let mut pass = targets.declare(light.declare(self.gl.pass("surfaces")));
-        if let Some(from) = from {
+        if let Known::Colors(from) = known {
             pass = pass.read("dominant_color", from.color).read("depth_map", from.depth);
         }
         pass.run(|| {
             targets.bind(targets.layout.texture_size(view.size));
             self.gl.clear(Some(view.depth.clear_value()));
-            let variant = Variant { reprojected: from.is_some(), ..Renderer::variant(targets) };
+            if let Known::Border(warp) = known {
+                self.draw_curtain(warp);
+            }
+            let reprojected = matches!(known, Known::Colors(_));
+            let variant = Variant { reprojected, ..Renderer::variant(targets) };
             self.draw_opaque(variant, &light, views, surfaces, |program| {
-                if let Some(from) = from {
+                if let Known::Colors(from) = known {
                     set_reprojection(program, from, view);
                 }
             });
@@ -616,7 +630,7 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(depth), None)?;
         let culler = Culler::of_view(view);
-        self.draw_on_sky_as(targets, scene, &[*view], &Surfaces::Selected(&culler), Some(from));
+        self.draw_on_sky_as(targets, scene, &[*view], &Surfaces::Selected(&culler), Known::Colors(from));
         self.draw_transparent(targets, scene, std::slice::from_ref(view));
         self.resolve(targets, view, depth, self.ink, None)?;
         self.render_bloom(targets, view, Eye::Left);

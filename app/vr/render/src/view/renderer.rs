@@ -15,6 +15,7 @@ use super::geometry::{GeometryPass, Surfaces, Variant};
 use super::layout::Layout;
 use super::lights::Lights;
 use super::lit::LitScene;
+use super::passes::Known;
 use super::scene::GpuScene;
 use super::settings::{MAX_POINT_LIGHTS, RenderSettings};
 use super::shadow::ShadowMap;
@@ -43,6 +44,8 @@ pub struct Renderer {
     pub(super) transparent: TransparentPass,
     pub(super) skies: Vec<(Variant, Program)>,
     pub(super) carry: Option<CarryPass>,
+    /// Hides what the other eye does not see, where its holes are rendered.
+    pub(super) curtain: Option<Program>,
     /// Loads depth into tiles.
     pub(super) depth_load: Option<DepthCopy>,
     /// True if what is drawn over a picture begins with it.
@@ -150,6 +153,7 @@ impl Renderer {
             transparent: TransparentPass::new(gl, scene),
             skies: Vec::new(),
             carry,
+            curtain: None,
             depth_load: None,
             loads_pictures: !capabilities.tile_samples || TileTarget::loads(gl, settings.msaa)?,
             resolve: Vec::new(),
@@ -187,7 +191,7 @@ impl Renderer {
         view: &View,
     ) -> Result<RenderedView<'a>, GlError> {
         let targets = self.fitting(targets, scene)?;
-        self.draw_source(targets, &scene.into(), view, None)?;
+        self.draw_source(targets, &scene.into(), view, Known::Nothing, None)?;
         self.complete(targets, view)
     }
 
@@ -420,11 +424,12 @@ impl Renderer {
         targets: &mut Targets,
         scene: &LitScene,
         view: &View,
+        known: Known,
         to: Option<&EyeTarget>,
     ) -> Result<bool, GlError> {
         let direct = targets.fit(view, scene.detail(view), self.needs(true), to)?;
         let culler = Culler::of_view(view);
-        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler));
+        self.draw_on_sky_as(targets, scene, &[*view], &Surfaces::Selected(&culler), known);
         self.resolve(targets, view, true, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
         self.render_bloom(targets, view, Eye::Left);
         Ok(direct)

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::{BVec3, Vec2, Vec3, Vec4};
+use glam::{BVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::cluster::{self, Batch, Cluster, Culler, VERTEX_ATTRIBUTES};
 use super::coverage;
@@ -269,23 +269,27 @@ impl GpuScene {
     /// Returns a region of a view around all blended surfaces that may be visible; `None` if there are none.
     pub(crate) fn transparent_region(&self, view: &View) -> Option<Region> {
         let (culler, to_clip, eye) = (Culler::of_view(view), eye_to_clip(view), view.pose.position);
-        let size = Vec2::from(view.size.map(|n| n as f32));
+        let (size, near) = (Vec2::from(view.size.map(|n| n as f32)), view.depth.near);
         let moving =
             self.blended().filter(|batch| batch.moves).flat_map(|b| &self.clusters[b.clusters.clone()]);
         let boxes = self.blended_boxes.iter().chain(moving.map(|cluster| &cluster.bounds));
         let mut region = Region::none(view.size);
         for &Bounds { min, max } in boxes.filter(|bounds| culler.sees(bounds)) {
-            let corners = (0..8).map(|i| {
+            let corners: [Vec4; 8] = std::array::from_fn(|i| {
                 let corner = Vec3::select(BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0), max, min);
                 to_clip * (corner - eye).extend(1.0)
             });
             let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-            for clip in corners {
-                if clip.w < view.depth.near {
-                    return Some(Region::whole(view.size));
+            let edges = (0..8).flat_map(|i| [1, 2, 4].map(|axis| [corners[i], corners[i | axis]]));
+            for [a, b] in edges {
+                // The part of the edge in front of the near plane.
+                let clipped = |a: Vec4, b: Vec4| {
+                    if a.w < near { a.lerp(b, ((near - a.w) / (b.w - a.w)).min(1.0)) } else { a }
+                };
+                for clip in [clipped(a, b), clipped(b, a)].into_iter().filter(|_| a.w.max(b.w) >= near) {
+                    let pixel = (clip.xy() / near.max(clip.w) * 0.5 + 0.5) * size;
+                    (low, high) = (low.min(pixel), high.max(pixel));
                 }
-                let pixel = (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * size;
-                (low, high) = (low.min(pixel), high.max(pixel));
             }
             // One pixel more on each side, since a GPU rounds in another way.
             let first = (low - 1.0).floor().clamp(Vec2::ZERO, size).as_uvec2();
