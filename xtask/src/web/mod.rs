@@ -25,13 +25,17 @@ pub use site::publish;
 pub const TRIPLE: &str = "wasm32-unknown-unknown";
 /// The example of yoro-wgpu.
 const EXAMPLE: &str = "offscreen";
+/// Cargo's profile of what is published.
+const PUBLISHED: &str = "web";
+/// The profile of what is built for tests, in a third of the time.
+const TESTED: &str = "web-test";
 /// Maximum number of bytes transferred by a first visit, since phones load the page over mobile networks.
 const BUDGET: u64 = 1_200_000;
 
 /// Returns the folder of the page or, with `wgpu`, of the example of yoro-wgpu. Builds it unless it is taken `as_built`.
 pub fn folder(wgpu: bool, as_built: bool) -> anyhow::Result<PathBuf> {
     if !as_built {
-        return if wgpu { build_example() } else { build() };
+        return if wgpu { build_example(PUBLISHED) } else { build() };
     }
     let folder = target_folder()?.join(if wgpu { "web-wgpu" } else { "web" });
     ensure!(folder.join("index.html").is_file(), "{} has no page: build it", folder.display());
@@ -39,9 +43,10 @@ pub fn folder(wgpu: bool, as_built: bool) -> anyhow::Result<PathBuf> {
 }
 
 /// Builds the example of yoro-wgpu for browsers with WebGPU, and returns its folder, `target/web-wgpu`.
-pub fn build_example() -> anyhow::Result<PathBuf> {
+fn build_example(profile: &str) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
-    let module = compile(&["--package", "yoro-wgpu", "--example", EXAMPLE], &format!("examples/{EXAMPLE}"))?;
+    let what = ["--package", "yoro-wgpu", "--example", EXAMPLE];
+    let module = compile(&what, &format!("examples/{EXAMPLE}"), profile)?;
     let page = root().join("app/engines/wgpu/examples").join(EXAMPLE);
     let folder = target_folder()?.join("web-wgpu");
     remove(&folder)?;
@@ -59,24 +64,39 @@ pub fn build_example() -> anyhow::Result<PathBuf> {
 
 /// Builds the page, and returns its folder, `target/web`. Without npm, it lacks the example for three.js.
 pub fn build() -> anyhow::Result<PathBuf> {
-    build_with(|error| {
-        println!("the example for three.js was left out: {error:#}");
-        Ok(String::new())
-    })
+    build_with(PUBLISHED, leave_out_example)
+}
+
+/// Builds the page for tests.
+pub fn page_for_tests() -> anyhow::Result<PathBuf> {
+    build_with(TESTED, leave_out_example)
+}
+
+/// Builds the example of yoro-wgpu for tests.
+pub fn example_for_tests() -> anyhow::Result<PathBuf> {
+    build_example(TESTED)
+}
+
+fn leave_out_example(error: anyhow::Error) -> anyhow::Result<String> {
+    println!("the example for three.js was left out: {error:#}");
+    Ok(String::new())
 }
 
 /// Builds the page. `without` decides what happens if the example for three.js cannot be made.
-fn build_with(without: fn(anyhow::Error) -> anyhow::Result<String>) -> anyhow::Result<PathBuf> {
+fn build_with(
+    profile: &str,
+    without: fn(anyhow::Error) -> anyhow::Result<String>,
+) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let target = target_folder()?;
-    let module = compile(&["--package", "yoro-web"], "yoro_web")?;
+    let module = compile(&["--package", "yoro-web"], "yoro_web", profile)?;
     let (folder, unfinished) = (target.join("web"), target.join("web.part"));
     remove(&unfinished)?;
     let Sizes { module, transferred, visit } =
         bind(&module, &unfinished.join(site::VERSION), &site::sources())?;
     // After the sizes have been measured, since a first visit does not load this module. It has the other one's name.
-    let video =
-        compile(&["--package", "yoro-web", "--no-default-features", "--features", "video"], "yoro_web")?;
+    let video = ["--package", "yoro-web", "--no-default-features", "--features", "video"];
+    let video = compile(&video, "yoro_web", profile)?;
     let renamed = video.with_file_name("yoro_web_video.wasm");
     copy(&video, &renamed)?;
     bind(&renamed, &unfinished.join(site::VERSION), &site::sources())?;
@@ -92,7 +112,7 @@ fn build_with(without: fn(anyhow::Error) -> anyhow::Result<String>) -> anyhow::R
         folder.display(),
         start.elapsed().as_secs_f64()
     );
-    if visit > BUDGET {
+    if visit > BUDGET && profile == PUBLISHED {
         bail!("{visit} bytes are more than the {BUDGET} that a phone is to load: leave something out");
     }
     Ok(folder)
@@ -105,7 +125,8 @@ pub fn build_once() -> anyhow::Result<PathBuf> {
     if let Some(folder) = &*built {
         return Ok(folder.clone());
     }
-    let folder = build_with(|error| Err(error.context("the example for three.js cannot be made")))?;
+    let without = |error: anyhow::Error| Err(error.context("the example for three.js cannot be made"));
+    let folder = build_with(PUBLISHED, without)?;
     *built = Some(folder.clone());
     Ok(folder)
 }
@@ -125,9 +146,9 @@ pub fn ready_for_tests() -> anyhow::Result<PathBuf> {
     Ok(PathBuf::new())
 }
 
-/// Compiles a module, and returns its path.
-fn compile(what: &[&str], name: &str) -> anyhow::Result<PathBuf> {
-    // Cargo's profile has the same name as the page's folder, so use a target folder of its own.
+/// Compiles a module with one of cargo's profiles, and returns its path.
+fn compile(what: &[&str], name: &str, profile: &str) -> anyhow::Result<PathBuf> {
+    // A profile has the same name as the page's folder, so use a target folder of its own.
     let target = target_folder()?.join("wasm");
     let (rust, with_std) = Rust::for_target(TRIPLE).with_context(|| {
         format!(
@@ -135,7 +156,7 @@ fn compile(what: &[&str], name: &str) -> anyhow::Result<PathBuf> {
              apt-get install rustc-web cargo-web rust-web-src"
         )
     })?;
-    let arguments = [&["build", "--profile", "web", "--target", TRIPLE], what].concat();
+    let arguments = [&["build", "--profile", profile, "--target", TRIPLE], what].concat();
     let mut command = rust.cargo()?;
     command.args(&arguments).env("CARGO_TARGET_DIR", &target);
     if with_std {
@@ -145,7 +166,7 @@ fn compile(what: &[&str], name: &str) -> anyhow::Result<PathBuf> {
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
     command.env("CARGO_ENCODED_RUSTFLAGS", anonymous_paths().unwrap_or_default());
     cargo::perform(&mut command, "the module does not compile")?;
-    Ok(target.join(TRIPLE).join("web").join(name).with_extension("wasm"))
+    Ok(target.join(TRIPLE).join(profile).join(name).with_extension("wasm"))
 }
 
 /// Sizes of the page in bytes.
