@@ -1,7 +1,6 @@
 // Averages the samples of a pixel and takes their nearest depth, which is reversed or not. With INK outlines are drawn
 // first, in each sample: a sample is compared with the same sample of its neighbours.
 #include "include/color.glsl"
-#include "include/hole_bloom.glsl"
 
 #if SAMPLES > 1
 uniform highp sampler2DMS color_map;
@@ -28,15 +27,7 @@ int at_sample = 0;
 #endif
 #ifdef INK
 #define INK_DEPTH(p) TEXEL(depth_map, p).x
-#ifdef HOLES
-// An eye was synthesized with outlines where alpha is 1, and its holes have none yet. What lies beside a hole counts as the
-// same material, since it is not known.
-#define INK_MATERIAL(p) (TEXEL(color_map, p).a == 1.0 ? id : TEXEL(color_map, p).a)
-#define HAS_INK(color) (color.a == 1.0)
-#else
 #define INK_MATERIAL(p) TEXEL(color_map, p).a
-#define HAS_INK(color) false
-#endif
 #include "include/ink.glsl"
 #endif
 
@@ -45,20 +36,11 @@ int at_sample = 0;
 vec4 sample_color(ivec2 p, float depth) {
     vec4 color = TEXEL(color_map, p);
 #ifdef INK
-    color.rgb *= depth == far_depth || HAS_INK(color) ? 1.0 : 1.0 - 0.82 * ink(p, view_size - 1, depth, color.a);
+    color.rgb *= depth == far_depth ? 1.0 : 1.0 - INK_DARKNESS * ink(p, view_size - 1, depth, color.a);
     color.a = luma(color.rgb);
 #endif
     return color;
 }
-
-#ifdef HOLES
-bool is_hole(ivec2 p) {
-#if SAMPLES > 1
-    at_sample = 0;
-#endif
-    return !HAS_INK(TEXEL(color_map, p));
-}
-#endif
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy) - view_origin;
@@ -74,13 +56,6 @@ void main() {
 #else
     float nearest = nearer * TEXEL(depth_map, p).x;
     out_color = sample_color(p, nearer * nearest);
-#endif
-#ifdef HOLES
-    // Light spreads over outlines, too.
-    if (is_hole(p)) {
-        out_color.rgb = with_view_bloom(out_color.rgb, nearer * nearest);
-        out_color.a = luma(out_color.rgb);
-    }
 #endif
 #ifdef WRITE_DEPTH
     gl_FragDepth = nearer * nearest;

@@ -85,6 +85,7 @@ static APP: &[File] = embed![
     "render/fill.frag",
     "render/forward.frag",
     "render/geometry.vert",
+    "render/hole_ink.frag",
     "render/keep_sample.frag",
     "render/motion.frag",
     "render/motion.vert",

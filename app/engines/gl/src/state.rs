@@ -26,6 +26,8 @@ pub enum Blend {
     Off,
     /// Adds to the pixel.
     Add,
+    /// Multiplies the pixel's colour. The target's alpha is not changed.
+    Multiply,
     /// Mixes with the pixel by the fragment's alpha. The target's alpha (its luma) is not changed.
     Over,
 }
@@ -80,6 +82,7 @@ impl Context {
             match state.blend {
                 Blend::Off => {}
                 Blend::Add => gl.blend_func(glow::ONE, glow::ONE),
+                Blend::Multiply => gl.blend_func_separate(glow::DST_COLOR, glow::ZERO, glow::ZERO, glow::ONE),
                 Blend::Over => {
                     gl.blend_func_separate(glow::SRC_ALPHA, glow::ONE_MINUS_SRC_ALPHA, glow::ZERO, glow::ONE)
                 }

@@ -244,20 +244,18 @@ impl Rendered<'_> {
         let (renderer, warp) = (frame.renderer, &self.views.warp);
         let view = frame.pair.view(frame.pair.dominant.other());
         let source = HoleSource { targets: self.targets, warp };
-        let mut draw = |to: &Destination, samples, inked: Option<&InkedHoles>| {
+        let Some(inked) = inked else {
             synthesis.synthesize(self.source, warp, to)?;
-            inked.inspect(|inked| inked.mark(to));
             renderer.draw_holes(&frame.scene, &view, to, samples, &source);
-            if inked.is_some() {
-                // Nothing reads the stencil once the holes are drawn, and these samples are stored.
-                frame.renderer.gl.discard_stencil();
-            }
-            Ok::<(), GlError>(())
+            return Ok(());
         };
-        let Some(inked) = inked else { return draw(to, samples, None) };
-        let (place, samples) = inked.fit(view.size)?;
-        draw(&place, samples, Some(inked))?;
-        renderer.ink_holes(inked, &view, frame.scene.detail(&view), to, &source);
+        let place = inked.fit(view.size)?;
+        synthesis.synthesize(self.source, warp, &place)?;
+        inked.mark(&place);
+        renderer.draw_holes(&frame.scene, &view, &place, 1, &source);
+        // Nothing reads the stencil of what is stored.
+        renderer.gl.discard_stencil();
+        renderer.ink_holes(inked, &frame.scene, &view, (to, samples), &source);
         Ok(())
     }
 }

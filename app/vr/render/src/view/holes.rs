@@ -42,10 +42,6 @@ impl Renderer {
             let source = ShaderSource::Raster { vertex: "render/curtain.vert", fragment: "render/fill.frag" };
             self.curtain = Some(Program::new(&self.gl, source, &[])?);
         }
-        if self.ink {
-            let samples = self.inked_samples();
-            self.prepare_resolve(Resolve { samples, ink: true, depth: true, holes: true, layer: false })?;
-        }
         Ok(())
     }
 
@@ -73,11 +69,6 @@ impl Renderer {
         self.ink
     }
 
-    /// Returns the number of samples of [`InkedHoles`].
-    fn inked_samples(&self) -> u32 {
-        if self.depth_resolve == DepthResolve::Samples { self.settings.msaa } else { 1 }
-    }
-
     /// Draws opaque surfaces and sky in the holes of an eye that was synthesized into `to`, which has this many samples in
     /// each pixel and begins at pixel [0, 0] of its framebuffer.
     pub(crate) fn draw_holes(
@@ -99,11 +90,7 @@ impl Renderer {
         pass.in_tile([Format::Rgba8, MARKED_DEPTH].map(image)).run(|| {
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
             let culler = Culler::of_view(view);
-            let bloom = |program: &Program| {
-                if !self.ink {
-                    self.set_hole_bloom(program, source);
-                }
-            };
+            let bloom = |program: &Program| self.set_hole_bloom(program, source);
             self.draw_opaque(variant, &light, views, &Surfaces::Selected(&culler), bloom);
             self.draw_sky(variant, &light, views, bloom);
         });
@@ -120,83 +107,76 @@ impl Renderer {
             .set("view_texel", 1.0 / size);
     }
 
-    /// Averages an eye in its own samples into `to`, with outlines and bloom in its holes, and with its nearest depth.
+    /// Writes an eye that was synthesized with outlines into `to`, which has this many samples in each pixel, and renders its
+    /// holes there, with outlines. `inked` has the same eye with one sample in each pixel.
     pub(crate) fn ink_holes(
         &self,
-        from: &InkedHoles,
+        inked: &InkedHoles,
+        scene: &LitScene,
         view: &View,
-        detail: f32,
-        to: &Destination,
+        (to, samples): (&Destination, u32),
         source: &HoleSource,
     ) {
-        let variant = Resolve { samples: from.samples, ink: true, depth: true, holes: true, layer: false };
-        let Some((_, program)) = self.resolve.iter().find(|(made, _)| *made == variant) else { return };
-        let [color, nearest] = [Format::Rgba8, Format::Depth32F].map(|format| Image {
-            format,
-            size: view.size,
-            samples: from.samples,
-        });
-        let pass = self.gl.pass("resolve").read("color_map", color).read("depth_map", nearest);
-        pass.in_tile([Format::Rgba8, MARKED_DEPTH].map(|format| to.image(format))).run(|| {
-            self.gl.overwrite(to, 1, true);
+        let pass = |name| {
+            let images = [Format::Rgba8, MARKED_DEPTH].map(|format| Image { samples, ..to.image(format) });
+            let [color, depth] = [inked.image.color(0), inked.image.depth()];
+            self.gl.pass(name).read("color_map", color).read("depth_map", depth).in_tile(images)
+        };
+        pass("load").run(|| {
+            self.gl.overwrite(to, 1, false);
+            self.gl.clear_marks(to, view.depth.clear_value(), true);
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
-            from.bind_textures(program.bind());
-            self.set_hole_bloom(program, source);
-            self.draw_resolve(program, Layout::Single, view, detail, None);
+            inked.bind(&inked.load);
+            self.gl.marking_stencil(|| self.gl.draw_screen());
+        });
+        self.draw_holes(scene, view, to, samples, source);
+        pass("outlines").run(|| {
+            let (blend, stencil) = (Blend::Multiply, StencilTest::Equal(0));
+            self.gl.set_raster_state(&RasterState { blend, stencil, ..RasterState::SCREEN });
+            inked.bind(&inked.ink);
+            self.draw_resolve(&inked.ink, Layout::Single, view, scene.detail(view), None);
         });
     }
 }
 
-/// The samples of an eye whose holes are drawn before their outlines, which compare samples with their neighbours. Alpha is
-/// the material in holes, and 1 where the eye was synthesized with outlines.
+/// An eye with one sample in each pixel whose holes are drawn, for their outlines, which compare pixels with their
+/// neighbours. Alpha is the material in holes, and 1 where the eye was synthesized with outlines.
 pub(crate) struct InkedHoles {
     gl: Rc<Context>,
-    samples: u32,
-    images: Images,
+    image: RenderTarget,
     /// Fills the alpha of pixels with some stencil.
     fill: Program,
-}
-
-enum Images {
-    One(RenderTarget),
-    Several(MultisampleTarget),
+    /// Draws what is no hole.
+    load: Program,
+    /// Draws outlines over holes.
+    ink: Program,
 }
 
 impl InkedHoles {
-    /// Makes samples of one pixel, to be fitted to each view.
+    /// Makes an image of one pixel, to be fitted to each view.
     pub(crate) fn new(renderer: &Renderer) -> Result<InkedHoles, GlError> {
-        let (gl, samples) = (&renderer.gl, renderer.inked_samples());
-        let images = if samples == 1 {
-            let color = (Format::Rgba8, Filter::Nearest);
-            Images::One(RenderTarget::new(gl, [1, 1], &[color], Some(MARKED_DEPTH))?)
-        } else {
-            let colors = &[Format::Rgba8];
-            Images::Several(MultisampleTarget::new(gl, [1, 1], samples, colors, MARKED_DEPTH, true)?)
-        };
-        let fill = Program::new(gl, ShaderSource::Screen("render/fill.frag"), &[])?;
-        Ok(InkedHoles { gl: gl.clone(), samples, images, fill })
+        let gl = &renderer.gl;
+        let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
+        Ok(InkedHoles {
+            gl: gl.clone(),
+            image: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], Some(MARKED_DEPTH))?,
+            fill: program("render/fill.frag", &[])?,
+            load: program("render/hole_ink.frag", &[])?,
+            ink: program("render/hole_ink.frag", &[("INK", String::new())])?,
+        })
     }
 
-    /// Fits the samples to a view, and returns the place to synthesize into, and the number of samples of a pixel.
-    pub(crate) fn fit(&mut self, size: [u32; 2]) -> Result<(Destination, u32), GlError> {
-        let place = match &mut self.images {
-            Images::One(image) => {
-                image.resize(size)?;
-                Destination::whole(image)
-            }
-            Images::Several(samples) => {
-                samples.resize(size)?;
-                samples.part(size)
-            }
-        };
-        Ok((place, self.samples))
+    /// Fits the image to a view, and returns the place to synthesize into.
+    pub(crate) fn fit(&mut self, size: [u32; 2]) -> Result<Destination, GlError> {
+        self.image.resize(size)?;
+        Ok(Destination::whole(&self.image))
     }
 
     /// Tells holes from the rest by alpha, which a shader can read, once an eye is synthesized into `to`.
     pub(crate) fn mark(&self, to: &Destination) {
         // The eye was synthesized into the same tiles, and its holes are drawn in them. Then they are stored once.
-        let image = |format| Image { samples: self.samples, ..to.image(format) };
-        self.gl.pass("mark").store([Format::Rgba8, Format::Depth32F].map(image)).run(|| {
+        let images = [Format::Rgba8, Format::Depth32F].map(|format| to.image(format));
+        self.gl.pass("mark").store(images).run(|| {
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
             self.fill.bind();
             for (stencil, alpha) in [(0, 0.0f32), (1, 1.0)] {
@@ -209,20 +189,11 @@ impl InkedHoles {
         });
     }
 
-    fn bind_textures(&self, program: &Program) {
-        match &self.images {
-            Images::One(image) => {
-                program.texture_of("color_map", 0, image.color(0)).texture_of("depth_map", 1, image.depth());
-            }
-            Images::Several(samples) => {
-                if let Some((color, depth)) = samples.color().zip(samples.depth()) {
-                    program.texture_multisample("color_map", 0, color).texture_multisample(
-                        "depth_map",
-                        1,
-                        depth,
-                    );
-                }
-            }
-        }
+    fn bind(&self, program: &Program) {
+        program.bind().texture_of("color_map", 0, self.image.color(0)).texture_of(
+            "depth_map",
+            1,
+            self.image.depth(),
+        );
     }
 }

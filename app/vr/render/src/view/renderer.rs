@@ -62,8 +62,6 @@ pub(super) struct Resolve {
     pub ink: bool,
     pub depth: bool,
     pub layer: bool,
-    /// Draws outlines in the holes of a synthesized eye alone.
-    pub holes: bool,
 }
 
 /// A variant of `render/composite.frag`.
@@ -286,13 +284,7 @@ impl Renderer {
         let samples =
             if self.depth_resolve == DepthResolve::Samples && !layer { self.settings.msaa } else { 1 };
         if self.ink || self.depth_resolve == DepthResolve::Samples {
-            self.prepare_resolve(Resolve {
-                samples,
-                ink: self.ink,
-                depth: samples > 1,
-                layer,
-                ..Resolve::default()
-            })?;
+            self.prepare_resolve(Resolve { samples, ink: self.ink, depth: samples > 1, layer })?;
         }
         if self.bloom.is_some() || layer {
             self.prepare_composite(Composite { bloom: self.bloom.is_some(), layer, ..Composite::default() })?;
@@ -357,8 +349,7 @@ impl Renderer {
         if variant.reprojected && self.depth_resolve == DepthResolve::InColor {
             shading.push(("DEPTH_PAIRS", String::new()));
         }
-        // Outlines come before bloom.
-        let holes = variant.holes && self.bloom.is_some() && !self.ink;
+        let holes = variant.holes && self.bloom.is_some();
         shading.extend(holes.then(|| ("BLOOM", String::new())));
         self.geometry.push(GeometryPass::new(gl, scene, variant, &shading)?);
         if !variant.reprojected {
@@ -377,13 +368,7 @@ impl Renderer {
     pub(super) fn prepare_resolve(&mut self, variant: Resolve) -> Result<(), GlError> {
         if self.resolve.iter().all(|(made, _)| *made != variant) {
             let mut defines = vec![("SAMPLES", variant.samples.to_string())];
-            let flags = [
-                ("INK", variant.ink),
-                ("WRITE_DEPTH", variant.depth),
-                ("LAYER", variant.layer),
-                ("HOLES", variant.holes),
-                ("BLOOM", variant.holes && self.bloom.is_some()),
-            ];
+            let flags = [("INK", variant.ink), ("WRITE_DEPTH", variant.depth), ("LAYER", variant.layer)];
             defines.extend(flags.into_iter().filter(|(_, on)| *on).map(|(name, _)| (name, String::new())));
             let program = Program::new(&self.gl, ShaderSource::Screen("render/resolve.frag"), &defines)?;
             self.resolve.push((variant, program));
