@@ -13,12 +13,26 @@ uniform ivec2 view_size;
 #define INK_MATERIAL(p) (TEXEL(color_map, p).a == 1.0 ? id : TEXEL(color_map, p).a)
 #include "include/ink.glsl"
 
+// The depth of another surface is farther or nearer by this factor.
+const float OTHER = 1.1;
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
+    // The surface in the middle of the pixel, or one before it that reaches into the pixel.
+    ivec2 at = p;
     float depth = INK_DEPTH(p);
-    float line = depth == far_depth ? 0.0 : ink(p, view_size - 1, depth, TEXEL(color_map, p).a);
-    // The factor on what is drawn there.
+    for (int i = 0; i < 4; ++i) {
+        ivec2 beside = clamp(p + (i < 2 ? ivec2(2 * i - 1, 0) : ivec2(0, 2 * i - 5)), ivec2(0), view_size - 1);
+        float d = INK_DEPTH(beside);
+        if (d > OTHER * depth) {
+            at = beside;
+            depth = d;
+        }
+    }
+    float line = depth == far_depth ? 0.0 : ink(at, view_size - 1, depth, TEXEL(color_map, at).a);
+    // The factor on its samples.
     out_color = vec4(vec3(1.0 - INK_DARKNESS * line), 1.0);
+    gl_FragDepth = depth / OTHER;
 }
 #else
 #include "include/color.glsl"

@@ -2,8 +2,8 @@
 //!
 //! Passes declare which images they read, load and store. An image that is loaded or stored moves once. A triangle that
 //! covers the view reads each texel of its images once, a mesh one texel of each map of its material for each fragment; the shadow map
-//! is always read once for each fragment, and the march reads depth only where a tile has no law. Samples are averaged in
-//! the tiles.
+//! is always read once for each fragment, and the march reads depth only where a tile has no law. Outlines are read where they
+//! are drawn. Samples are averaged in the tiles.
 
 use yoro_gl::{Format, Image, Read, Shape};
 use yoro_test_support::record::{RecordedDraw, RecordedPass};
@@ -16,6 +16,8 @@ const COPIED: &str = "copied";
 const CARRY: &str = "carry";
 /// The pass that reads the depth of a tile of 16 x 8 pixels in each fragment.
 const TILES: &str = "gather tiles";
+/// The pass that reads the pixels that it draws over, and those around them.
+const OUTLINES: &str = "outlines";
 /// The pass that reads depth where it needs it.
 pub const MARCH: &str = "gather march";
 
@@ -70,7 +72,11 @@ impl Assumed {
                 let area = areas().find(|area| *area == image.size);
                 let area = area.or_else(|| whole.filter(|size| pixels(*size) == covered));
                 let area = area.or_else(|| areas().max_by(|a, b| pixels(*a).total_cmp(&pixels(*b))));
-                let share = if name == MARCH && uniform == "depth_map" { 1.0 - self.laws } else { 1.0 };
+                let share = match name {
+                    MARCH if uniform == "depth_map" => 1.0 - self.laws,
+                    OUTLINES => pass.draws.iter().map(|draw| fragments(pass, draw)).sum::<f64>() / covered,
+                    _ => 1.0,
+                };
                 share * area.map_or(0.0, |area| once(image, area))
             }
         }

@@ -5,16 +5,15 @@ use std::rc::Rc;
 use glam::{Vec2, Vec4};
 
 use super::cluster::Culler;
-use super::depth::DepthResolve;
 use super::geometry::{Surfaces, Variant};
 use super::layout::Layout;
 use super::lit::LitScene;
-use super::renderer::{Renderer, Resolve};
+use super::renderer::Renderer;
 use super::scene::{FREE_UNIT, GpuScene};
 use super::targets::Targets;
 use yoro::eyes::{DisparityMap, Eye, View, Warp};
 use yoro_gl::{
-    Context, Destination, Filter, Format, GlError, Image, MultisampleTarget, Program, RasterState,
+    Blend, Context, DepthTest, Destination, Filter, Format, GlError, Image, Program, RasterState,
     RenderTarget, ShaderSource, StencilTest,
 };
 
@@ -47,21 +46,12 @@ impl Renderer {
 
     /// Hides surfaces in the bound view that lie beyond the border of the other eye, which only the guard band would show.
     pub(super) fn draw_curtain(&self, warp: &Warp) {
-        let (Some(program), DisparityMap { offset, scale }) = (&self.curtain, warp.law) else { return };
-        let [source, target] = [warp.source_size, warp.target_size].map(|size| f64::from(size[0]));
-        let border = match warp.target_eye {
-            Eye::Left => -CURTAIN_MARGIN,
-            Eye::Right => target + CURTAIN_MARGIN,
-        };
-        // The depth in each column of what lands at the border; without disparity, there is none.
-        let [left, right] = [0.0, source].map(|column| 2.0 * (border - column - offset) / scale - 1.0);
-        if !(left.is_finite() && right.is_finite()) {
-            return;
+        if let (Some(program), Some(depth)) = (&self.curtain, curtain(warp)) {
+            self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+            self.gl.mask_colors([false; 4]);
+            program.bind().set("curtain", 2.0 * depth - Vec2::X);
+            self.gl.draw_screen();
         }
-        self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
-        self.gl.mask_colors([false; 4]);
-        program.bind().set("curtain", Vec2::new(left as f32, (right - left) as f32));
-        self.gl.draw_screen();
     }
 
     /// True if outlines are drawn in holes, too, by [`Renderer::ink_holes`].
@@ -132,11 +122,25 @@ impl Renderer {
         self.draw_holes(scene, view, to, samples, source);
         pass("outlines").run(|| {
             let (blend, stencil) = (Blend::Multiply, StencilTest::Equal(0));
-            self.gl.set_raster_state(&RasterState { blend, stencil, ..RasterState::SCREEN });
+            self.gl.set_raster_state(&RasterState { depth: DepthTest::Less, blend, stencil, cull: false });
+            self.gl.mask_depth();
             inked.bind(&inked.ink);
             self.draw_resolve(&inked.ink, Layout::Single, view, scene.detail(view), None);
         });
     }
+}
+
+/// Returns the depth in the rendered view of what lands at the other eye's border, at the view's left border, and its change
+/// up to the right one. Where it is negative, nothing is hidden. `None` without disparity.
+fn curtain(warp: &Warp) -> Option<Vec2> {
+    let DisparityMap { offset, scale } = warp.law;
+    let border = match warp.target_eye {
+        Eye::Left => -CURTAIN_MARGIN,
+        Eye::Right => f64::from(warp.target_size[0]) + CURTAIN_MARGIN,
+    };
+    let left = (border - offset) / scale;
+    let change = -f64::from(warp.source_size[0]) / scale;
+    (scale != 0.0).then_some(Vec2::new(left as f32, change as f32))
 }
 
 /// An eye with one sample in each pixel whose holes are drawn, for their outlines, which compare pixels with their
@@ -195,5 +199,38 @@ impl InkedHoles {
             1,
             self.image.depth(),
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, GuardBand, Pose};
+
+    /// All that it hides lands beyond the border, and it hides nothing within the rendered eye.
+    #[test]
+    fn the_curtain_hangs_at_the_other_eyes_border() {
+        for dominant in Eye::BOTH {
+            let depth = DepthRange { convention: DepthConvention::Reversed, ..DepthRange::PAPER };
+            let options = EyeOptions { dominant, depth, ..EyeOptions::default() };
+            let eyes = options.pair(Pose::IDENTITY);
+            let views = eyes.synthesis_views(GuardBand::Distance(1.0)).unwrap();
+            let (warp, size) = (&views.warp, views.source.size);
+            let curtain = curtain(warp).unwrap();
+            let depth = |column: f32| curtain.x + curtain.y * column / size[0] as f32;
+            let [first, end] = [0, warp.target_size[0]].map(|column| column as f32);
+            for column in 0..size[0] {
+                let lands = column as f32 + warp.law.displacement(depth(column as f32).into()) as f32;
+                let beyond = if warp.target_eye == Eye::Left { first - lands } else { lands - end };
+                assert!((beyond - CURTAIN_MARGIN as f32).abs() < 0.01, "column {column}: {lands}");
+            }
+            let crop = views.dominant_crop[0];
+            let [near, far] = match warp.target_eye {
+                Eye::Left => [0, crop],
+                Eye::Right => [size[0], crop + eyes.size[0]],
+            };
+            assert!(crop + eyes.size[0] < size[0] || crop > 0);
+            assert!(depth(near as f32) > 0.0 && depth(far as f32) <= 0.0);
+        }
     }
 }
