@@ -116,9 +116,7 @@ impl StereoMethod for Synthesized {
                 guess: is_first.then(|| GuessedDepth::new(&self.gl, &Options::default())).transpose()?,
                 targets: renderer.targets(Layout::Single)?,
                 over: OverlayPass::new(renderer, renders_holes)?,
-                inked: (renders_holes && renderer.inks_holes())
-                    .then(|| InkedHoles::new(renderer))
-                    .transpose()?,
+                inked: (renders_holes && renderer.ink).then(|| InkedHoles::new(renderer)).transpose()?,
                 synthesizers: Synthesizers {
                     gl: self.gl.clone(),
                     options: self.options.synthesis,

@@ -33,8 +33,7 @@ pub(crate) struct HoleSource<'a> {
 impl Renderer {
     /// Compiles the programs that draw in holes.
     pub(crate) fn prepare_holes(&mut self, scene: &GpuScene) -> Result<(), GlError> {
-        let msaa = self.settings.msaa;
-        for samples in [1, msaa].into_iter().take(1 + usize::from(msaa > 1)) {
+        for samples in [1, self.settings.msaa] {
             self.prepare_variant(scene, Variant { holes: true, ..Variant::plain(samples) })?;
         }
         if self.curtain.is_none() {
@@ -52,11 +51,6 @@ impl Renderer {
             program.bind().set("curtain", 2.0 * depth - Vec2::X);
             self.gl.draw_screen();
         }
-    }
-
-    /// True if outlines are drawn in holes, too, by [`Renderer::ink_holes`].
-    pub(crate) fn inks_holes(&self) -> bool {
-        self.ink
     }
 
     /// Draws opaque surfaces and sky in the holes of an eye that was synthesized into `to`, which has this many samples in
@@ -148,7 +142,7 @@ fn curtain(warp: &Warp) -> Option<Vec2> {
 pub(crate) struct InkedHoles {
     gl: Rc<Context>,
     image: RenderTarget,
-    /// Fills the alpha of pixels with some stencil.
+    /// Fills the alpha of what is no hole.
     fill: Program,
     /// Draws what is no hole.
     load: Program,
@@ -176,61 +170,49 @@ impl InkedHoles {
         Ok(Destination::whole(&self.image))
     }
 
-    /// Tells holes from the rest by alpha, which a shader can read, once an eye is synthesized into `to`.
+    /// Marks what is no hole by alpha, which a shader can read, once an eye is synthesized into `to`.
     pub(crate) fn mark(&self, to: &Destination) {
         // The eye was synthesized into the same tiles, and its holes are drawn in them. Then they are stored once.
         let images = [Format::Rgba8, Format::Depth32F].map(|format| to.image(format));
         self.gl.pass("mark").store(images).run(|| {
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
-            self.fill.bind();
-            for (stencil, alpha) in [(0, 0.0f32), (1, 1.0)] {
-                let stencil = StencilTest::Equal(stencil);
-                self.gl.set_raster_state(&RasterState { stencil, ..RasterState::SCREEN });
-                self.gl.mask_colors([false, false, false, true]);
-                self.fill.set("fill", Vec4::splat(alpha));
-                self.gl.draw_screen();
-            }
+            self.gl.set_raster_state(&RasterState { stencil: StencilTest::Equal(1), ..RasterState::SCREEN });
+            self.gl.mask_colors([false, false, false, true]);
+            self.fill.bind().set("fill", Vec4::ONE);
+            self.gl.draw_screen();
         });
     }
 
     fn bind(&self, program: &Program) {
-        program.bind().texture_of("color_map", 0, self.image.color(0)).texture_of(
-            "depth_map",
-            1,
-            self.image.depth(),
-        );
+        let (color, depth) = (self.image.color(0), self.image.depth());
+        program.bind().texture_of("color_map", 0, color).texture_of("depth_map", 1, depth);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, GuardBand, Pose};
+    use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, GuardBand, Pose, SynthesisViews};
 
     /// All that it hides lands beyond the border, and it hides nothing within the rendered eye.
     #[test]
     fn the_curtain_hangs_at_the_other_eyes_border() {
         for dominant in Eye::BOTH {
             let depth = DepthRange { convention: DepthConvention::Reversed, ..DepthRange::PAPER };
-            let options = EyeOptions { dominant, depth, ..EyeOptions::default() };
-            let eyes = options.pair(Pose::IDENTITY);
-            let views = eyes.synthesis_views(GuardBand::Distance(1.0)).unwrap();
-            let (warp, size) = (&views.warp, views.source.size);
-            let curtain = curtain(warp).unwrap();
-            let depth = |column: f32| curtain.x + curtain.y * column / size[0] as f32;
-            let [first, end] = [0, warp.target_size[0]].map(|column| column as f32);
-            for column in 0..size[0] {
-                let lands = column as f32 + warp.law.displacement(depth(column as f32).into()) as f32;
-                let beyond = if warp.target_eye == Eye::Left { first - lands } else { lands - end };
-                assert!((beyond - CURTAIN_MARGIN as f32).abs() < 0.01, "column {column}: {lands}");
+            let eyes = EyeOptions { dominant, depth, ..EyeOptions::default() }.pair(Pose::IDENTITY);
+            let SynthesisViews { warp, source, dominant_crop, .. } =
+                eyes.synthesis_views(GuardBand::Distance(1.0)).unwrap();
+            let (curtain, [width, ..]) = (curtain(&warp).unwrap(), source.size);
+            let depth = |column: u32| curtain.x + curtain.y * column as f32 / width as f32;
+            let is_left = warp.target_eye == Eye::Left;
+            for column in 0..width {
+                let lands = f64::from(column) + warp.law.displacement(depth(column).into());
+                let beyond = if is_left { -lands } else { lands - f64::from(warp.target_size[0]) };
+                assert!((beyond - CURTAIN_MARGIN).abs() < 0.01, "column {column}: {lands}");
             }
-            let crop = views.dominant_crop[0];
-            let [near, far] = match warp.target_eye {
-                Eye::Left => [0, crop],
-                Eye::Right => [size[0], crop + eyes.size[0]],
-            };
-            assert!(crop + eyes.size[0] < size[0] || crop > 0);
-            assert!(depth(near as f32) > 0.0 && depth(far as f32) <= 0.0);
+            // The guard band is on the side of the other eye's border.
+            let [outer, inner] = if is_left { [0, dominant_crop[0]] } else { [width, eyes.size[0]] };
+            assert!(outer != inner && depth(outer) > 0.0 && depth(inner) <= 0.0);
         }
     }
 }

@@ -109,17 +109,6 @@ impl Renderer {
         scene: &LitScene,
         views: &[View],
         surfaces: &Surfaces,
-    ) {
-        self.draw_on_sky_as(targets, scene, views, surfaces, Known::Nothing);
-    }
-
-    /// Like [`Renderer::draw_on_sky`], with what is known of the other eye.
-    pub(super) fn draw_on_sky_as(
-        &self,
-        targets: &mut Targets,
-        scene: &LitScene,
-        views: &[View],
-        surfaces: &Surfaces,
         known: Known,
     ) {
         let view = &views[0];
@@ -134,8 +123,8 @@ impl Renderer {
             if let Known::Border(warp) = known {
                 self.draw_curtain(warp);
             }
-            let reprojected = matches!(known, Known::Colors(_));
-            let variant = Variant { reprojected, ..Renderer::variant(targets) };
+            let variant =
+                Variant { reprojected: matches!(known, Known::Colors(_)), ..Renderer::variant(targets) };
             self.draw_opaque(variant, &light, views, surfaces, |program| {
                 if let Known::Colors(from) = known {
                     set_reprojection(program, from, view);
@@ -574,7 +563,7 @@ impl Renderer {
         slice: [f32; 2],
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
-        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Slice(slice));
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Slice(slice), Known::Nothing);
         self.resolve(targets, view, true, false, None)
     }
 
@@ -615,7 +604,7 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
         let culler = Culler::of_view(view);
-        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler));
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler), Known::Nothing);
         self.resolve(targets, view, true, false, None)
     }
 
@@ -630,7 +619,7 @@ impl Renderer {
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(depth), None)?;
         let culler = Culler::of_view(view);
-        self.draw_on_sky_as(targets, scene, &[*view], &Surfaces::Selected(&culler), Known::Colors(from));
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler), Known::Colors(from));
         self.draw_transparent(targets, scene, std::slice::from_ref(view));
         self.resolve(targets, view, depth, self.ink, None)?;
         self.render_bloom(targets, view, Eye::Left);

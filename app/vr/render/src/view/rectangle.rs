@@ -19,8 +19,8 @@ impl Rectangle {
     }
 }
 
-/// Cells of a region along each axis. In a headset's eye they have about 26 pixels, as many as a GPU's tiles or fewer.
-const CELLS: u32 = 64;
+/// Cells of a region along each axis. In a headset's eye they have about 50 pixels, not much more than a GPU's tiles.
+const CELLS: u32 = 32;
 
 /// A part of an image: some of its cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub struct Region {
     /// Width and height of the image in pixels.
     size: [u32; 2],
     /// A bit for each cell of each row.
-    rows: [u64; CELLS as usize],
+    rows: [u32; CELLS as usize],
 }
 
 impl Region {
@@ -51,7 +51,7 @@ impl Region {
     pub fn add(&mut self, Rectangle { origin, size }: Rectangle) {
         let cell = |axis: usize, pixel: u32| ((pixel + 1) * CELLS - 1) / self.size[axis];
         let cells = [0, 1].map(|i| cell(i, origin[i])..=cell(i, origin[i] + size[i] - 1));
-        let row: u64 = cells[0].clone().map(|column| 1 << column).sum();
+        let row: u32 = cells[0].clone().map(|column| 1 << column).sum();
         cells[1].clone().for_each(|i| self.rows[i as usize] |= row);
     }
 
@@ -62,7 +62,7 @@ impl Region {
             let row = self.rows[bottom];
             let left = row.trailing_zeros();
             let right = left + (row >> left).trailing_ones();
-            let run = (left..right).map(|column| 1 << column).sum::<u64>();
+            let run = (left..right).map(|column| 1 << column).sum::<u32>();
             let rows = self.rows[bottom..].iter_mut().take_while(|row| **row & run == run);
             let height = rows.map(|row| *row &= !run).count();
             let edge = |axis: usize, cell: u32| cell * self.size[axis] / CELLS;

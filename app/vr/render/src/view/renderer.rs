@@ -35,7 +35,7 @@ pub struct Renderer {
     scene_id: u64,
     pub(super) shadow: Option<ShadowMap>,
     /// True if the style has outlines, which compare samples with their neighbours.
-    pub(super) ink: bool,
+    pub(crate) ink: bool,
     /// How the samples of a pixel become one depth on this driver.
     pub depth_resolve: DepthResolve,
     /// The defines of `include/shade.glsl`.
@@ -414,7 +414,7 @@ impl Renderer {
     ) -> Result<bool, GlError> {
         let direct = targets.fit(view, scene.detail(view), self.needs(true), to)?;
         let culler = Culler::of_view(view);
-        self.draw_on_sky_as(targets, scene, &[*view], &Surfaces::Selected(&culler), known);
+        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler), known);
         self.resolve(targets, view, true, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
         self.render_bloom(targets, view, Eye::Left);
         Ok(direct)
@@ -438,7 +438,7 @@ impl Renderer {
             1 => Surfaces::Selected(&culler),
             _ => Surfaces::Slice([view.depth.near, view.depth.far]),
         };
-        self.draw_on_sky(targets, scene, views, &surfaces);
+        self.draw_on_sky(targets, scene, views, &surfaces, Known::Nothing);
         self.draw_transparent(targets, scene, views);
         self.resolve(targets, view, depth, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
         if views.len() == 1 && !direct {
