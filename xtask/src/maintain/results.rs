@@ -33,8 +33,8 @@ const RUNS: [Run; 11] = [
 ];
 /// The name of the estimate of phones, whose report is kept as text.
 const ESTIMATE: &str = "estimate";
-const ESTIMATE_ARGUMENTS: [&str; 6] = ["--width", "1024", "--height", "1024", "--viewpoints", "1"];
-const ESTIMATE_MINUTES: u32 = 12;
+const ESTIMATE_ARGUMENTS: [&str; 6] = ["--width", "512", "--height", "512", "--viewpoints", "1"];
+const ESTIMATE_MINUTES: u32 = 8;
 
 impl Run {
     fn suite(&self) -> &'static str {
