@@ -76,15 +76,17 @@ fn this_program() -> anyhow::Result<PathBuf> {
     Ok(std::env::current_exe()?)
 }
 
-/// True if a test needs any of the items.
-pub fn is_needed(package: &str, test: &str) -> bool {
-    ITEMS.iter().any(|item| item.is_for(package, test))
+/// True if a test needs any of the items that are built.
+pub fn is_built(package: &str, test: &str) -> bool {
+    ITEMS.iter().any(|item| item.build.is_some() && item.is_for(package, test))
 }
 
 /// Installations and downloads that are running in threads.
 pub struct Preparation<'scope> {
     libraries: Option<ScopedJoinHandle<'scope, anyhow::Result<Equipment>>>,
-    items: Vec<(&'static Item, ScopedJoinHandle<'scope, anyhow::Result<PathBuf>>)>,
+    fetching: Vec<(&'static Item, ScopedJoinHandle<'scope, anyhow::Result<PathBuf>>)>,
+    /// What is to be built.
+    fetched: Vec<&'static Item>,
 }
 
 /// The equipment of this machine.
@@ -114,8 +116,8 @@ impl<'scope> Preparation<'scope> {
                 item.variable != "CHROMIUM" && tests.any(|(package, test)| item.is_for(package, test))
             })
         };
-        let items = ITEMS.iter().filter(wanted).map(|item| (item, scope.spawn(item.fetch))).collect();
-        Ok(Self { libraries: Some(scope.spawn(libraries)), items })
+        let fetching = ITEMS.iter().filter(wanted).map(|item| (item, scope.spawn(item.fetch))).collect();
+        Ok(Self { libraries: Some(scope.spawn(libraries)), fetching, fetched: Vec::new() })
     }
 
     /// Waits for the system libraries, which all tests need.
@@ -123,20 +125,27 @@ impl<'scope> Preparation<'scope> {
         self.libraries.take().map_or_else(|| Ok(Equipment::default()), join)
     }
 
-    /// Waits for the other items, and builds those that have to be built.
-    pub fn finish(self) -> anyhow::Result<Equipment> {
+    /// Waits for the other items, and returns those that need not be built.
+    pub fn fetched(&mut self) -> Equipment {
         let mut equipment = Equipment::default();
-        for (item, fetching) in self.items {
-            let fetched = join(fetching);
-            let path = match (fetched, item.build) {
-                (Ok(_), Some(build)) => Some(build()?),
-                (Ok(path), None) => Some(path),
-                (Err(error), _) => {
+        for (item, fetching) in self.fetching.drain(..) {
+            match join(fetching) {
+                Ok(_) if item.build.is_some() => self.fetched.push(item),
+                Ok(path) => equipment.add(item, Some(path)),
+                Err(error) => {
                     eprintln!("warning: {}: {error:#}", item.what);
-                    None
+                    equipment.add(item, None);
                 }
-            };
-            equipment.items.push((item.what, item.variable, path));
+            }
+        }
+        equipment
+    }
+
+    /// Builds the items that have to be built.
+    pub fn built(self) -> anyhow::Result<Equipment> {
+        let mut equipment = Equipment::default();
+        for item in self.fetched {
+            equipment.add(item, item.build.map(|build| build()).transpose()?);
         }
         Ok(equipment)
     }
@@ -147,6 +156,10 @@ fn join<T>(handle: ScopedJoinHandle<'_, anyhow::Result<T>>) -> anyhow::Result<T>
 }
 
 impl Equipment {
+    fn add(&mut self, item: &Item, path: Option<PathBuf>) {
+        self.items.push((item.what, item.variable, path));
+    }
+
     /// Sets the variables that tell a test program what is available.
     pub fn set_variables(&self, command: &mut Command) {
         for (_, variable, path) in &self.items {

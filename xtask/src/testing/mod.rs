@@ -77,9 +77,9 @@ struct Job<'a> {
 /// All jobs, in groups that run one after another.
 #[derive(Debug, Default)]
 struct Plan<'a> {
-    /// Tests that need no equipment.
+    /// Tests that need nothing that is built.
     first: Vec<Job<'a>>,
-    /// Tests that need equipment.
+    /// Tests that need something that is built.
     equipped: Vec<Job<'a>>,
     /// The tests in [`ALONE`].
     alone: Vec<Job<'a>>,
@@ -99,13 +99,14 @@ pub fn test(options: &Options) -> anyhow::Result<()> {
             None => Preparation::begin(scope, Some(&programs))?,
         };
         run.equipment = preparation.libraries()?;
+        run.equip(preparation.fetched());
         let plan = plan(&programs, options);
         run.total = programs.iter().map(|program| program.tests.len()).sum();
         let workers =
             options.jobs.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
         // The first worker builds, since cargo keeps but one processor busy while it links and optimizes whole programs.
         let mut prepared = Ok(Equipment::default());
-        let prepare = || prepared = preparation.finish();
+        let prepare = || prepared = preparation.built();
         run.perform(plan.first, workers, options, prepare)?;
         run.equip(prepared?);
         run.perform(plan.equipped, workers, options, || ())?;
@@ -232,7 +233,7 @@ fn plan<'a>(programs: &'a [Program], options: &Options) -> Plan<'a> {
         let (alone, beside): (Vec<_>, Vec<_>) =
             program.tests.iter().cloned().partition(|test| program.is_alone(test));
         let (equipped, first): (Vec<_>, Vec<_>) =
-            beside.into_iter().partition(|test| equipment::is_needed(&program.package, test));
+            beside.into_iter().partition(|test| equipment::is_built(&program.package, test));
         let size = if program.is_integration { 1 } else { UNIT };
         for (group, tests, size) in [
             (&mut plan.first, first, size),
@@ -263,15 +264,15 @@ mod tests {
     #[test]
     fn each_test_has_its_turn() {
         let programs = [
-            program("yoro-cli", "test", &["memory::largest", "xr::memory", "1", "2"]),
+            program("yoro-cli", "test", &["memory::largest", "web::1", "xr::memory", "2"]),
             program("yoro", "lib", &["a", "b"]),
         ];
         let plan = plan(&programs, &Options::default());
         let names = |jobs: &[Job]| jobs.iter().map(Job::name).collect::<Vec<_>>().join("; ");
-        // Chromium is for all tests of the program.
-        assert_eq!(names(&plan.first), "documentation; yoro, 2 tests");
-        let equipped = ["xr::memory", "1", "2"].map(|test| format!("yoro-cli::program {test}")).join("; ");
-        assert_eq!(names(&plan.equipped), equipped);
+        let first = ["documentation", "yoro-cli::program xr::memory", "yoro-cli::program 2", "yoro, 2 tests"];
+        assert_eq!(names(&plan.first), first.join("; "));
+        // The page is built.
+        assert_eq!(names(&plan.equipped), "yoro-cli::program web::1");
         assert_eq!(names(&plan.alone), "yoro-cli::program memory::largest");
     }
 }
