@@ -47,7 +47,7 @@ static ITEMS: [Item; 15] = [
     item("the page", "WEB", "yoro-cli web::", web::ready_for_tests)
         .built(|| web::page_for_tests().and(this_program())),
     item("the example of yoro-wgpu", "WGPU_WEB", "yoro-wgpu the_example_in_a_browser", web::ready_for_tests)
-        .built(|| web::example_for_tests().and(this_program())),
+        .built(|| web::build_example(web::TESTED).and(this_program())),
     item("the WebXR emulator", "WEBXR", "yoro-cli web::; yoro-three-tests headsets", web::emulator),
     item("three.js", "THREE", "yoro-three-tests ", web::three_modules),
     // The names of the program's tests do not show which of them open a page.

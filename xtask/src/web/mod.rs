@@ -28,7 +28,7 @@ const EXAMPLE: &str = "offscreen";
 /// Cargo's profile of what is published.
 const PUBLISHED: &str = "web";
 /// The profile of what is built for tests, in a third of the time.
-const TESTED: &str = "web-test";
+pub const TESTED: &str = "web-test";
 /// Maximum number of bytes transferred by a first visit, since phones load the page over mobile networks.
 const BUDGET: u64 = 1_200_000;
 
@@ -43,7 +43,7 @@ pub fn folder(wgpu: bool, as_built: bool) -> anyhow::Result<PathBuf> {
 }
 
 /// Builds the example of yoro-wgpu for browsers with WebGPU, and returns its folder, `target/web-wgpu`.
-fn build_example(profile: &str) -> anyhow::Result<PathBuf> {
+pub fn build_example(profile: &str) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let what = ["--package", "yoro-wgpu", "--example", EXAMPLE];
     let module = compile(&what, &format!("examples/{EXAMPLE}"), profile)?;
@@ -70,11 +70,6 @@ pub fn build() -> anyhow::Result<PathBuf> {
 /// Builds the page for tests.
 pub fn page_for_tests() -> anyhow::Result<PathBuf> {
     build_with(TESTED, leave_out_example)
-}
-
-/// Builds the example of yoro-wgpu for tests.
-pub fn example_for_tests() -> anyhow::Result<PathBuf> {
-    build_example(TESTED)
 }
 
 fn leave_out_example(error: anyhow::Error) -> anyhow::Result<String> {
