@@ -111,7 +111,7 @@ enum Task {
         /// Then serve it to browsers on this machine and, by `adb reverse tcp:8080 tcp:8080`, on a phone or headset
         #[arg(long)]
         serve: bool,
-        /// Do not build it again
+        /// Do not build it again; after `cargo xtask test` it is the larger build for tests
         #[arg(long)]
         as_built: bool,
         /// Port to serve at; 0 for any free one

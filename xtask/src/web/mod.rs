@@ -27,7 +27,7 @@ pub const TRIPLE: &str = "wasm32-unknown-unknown";
 const EXAMPLE: &str = "offscreen";
 /// Cargo's profile of what is published.
 const PUBLISHED: &str = "web";
-/// The profile of what is built for tests, in a third of the time.
+/// The profile of what is built for tests, in two thirds of the time.
 pub const TESTED: &str = "web-test";
 /// Maximum number of bytes transferred by a first visit, since phones load the page over mobile networks.
 const BUDGET: u64 = 1_200_000;

@@ -115,6 +115,7 @@ impl Renderer {
         });
         self.draw_holes(scene, view, to, samples, source);
         pass("outlines").run(|| {
+            // Samples pass that are not behind the outlined surface: depth is reversed.
             let (blend, stencil) = (Blend::Multiply, StencilTest::Equal(0));
             self.gl.set_raster_state(&RasterState { depth: DepthTest::Less, blend, stencil, cull: false });
             self.gl.mask_depth();
@@ -142,9 +143,9 @@ fn curtain(warp: &Warp) -> Option<Vec2> {
 pub(crate) struct InkedHoles {
     gl: Rc<Context>,
     image: RenderTarget,
-    /// Fills the alpha of what is no hole.
+    /// Fills alpha outside of holes.
     fill: Program,
-    /// Draws what is no hole.
+    /// Draws the eye outside of holes.
     load: Program,
     /// Draws outlines over holes.
     ink: Program,
@@ -170,7 +171,7 @@ impl InkedHoles {
         Ok(Destination::whole(&self.image))
     }
 
-    /// Marks what is no hole by alpha, which a shader can read, once an eye is synthesized into `to`.
+    /// Marks pixels outside of holes by alpha, which a shader can read, once an eye is synthesized into `to`.
     pub(crate) fn mark(&self, to: &Destination) {
         // The eye was synthesized into the same tiles, and its holes are drawn in them. Then they are stored once.
         let images = [Format::Rgba8, Format::Depth32F].map(|format| to.image(format));
