@@ -2,13 +2,13 @@
 #include "include/bloom.glsl"
 
 #ifdef BLOOM
-// The fragment's column minus that in the view is x + y * depth, its row minus that in the view z.
-uniform vec4 to_view;
-uniform vec2 view_texel;  // 1 / size of the view
+// The fragment's column minus that in what the bloom covers is x + y * depth, its row minus that there z.
+uniform vec4 to_bloom;
+uniform vec2 bloom_texel;  // 1 / size of what the bloom covers
 
 vec3 with_view_bloom(vec3 c, float depth) {
-    vec2 moved = vec2(to_view.x + to_view.y * depth, to_view.z);
-    return with_bloom(vec4(c, 0.0), (gl_FragCoord.xy - moved) * view_texel).rgb;
+    vec2 moved = vec2(to_bloom.x + to_bloom.y * depth, to_bloom.z);
+    return with_bloom(vec4(c, 0.0), (gl_FragCoord.xy - moved) * bloom_texel).rgb;
 }
 #else
 #define with_view_bloom(c, depth) (c)

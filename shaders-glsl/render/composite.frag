@@ -12,16 +12,16 @@ uniform int color_layer;
 uniform sampler2D color_map;
 #define COLOR_TEXEL(p) texelFetch(color_map, p, 0)
 #endif
-uniform ivec2 offset;       // from a pixel of the target to its pixel in the maps
-uniform ivec2 view_origin;  // lower left corner of the view in the maps, and its size
-uniform ivec2 view_size;
+uniform ivec2 offset;        // from a pixel of the target to its pixel in the maps
+uniform ivec2 bloom_origin;  // lower left corner in the maps of what the bloom covers, and its size
+uniform ivec2 bloom_size;
 
 layout(location = 0) out vec4 out_color;
 #include "include/carried.glsl"
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy) + offset;
-    out_color = with_bloom(COLOR_TEXEL(p), (vec2(p - view_origin) + 0.5) / vec2(view_size));
+    out_color = with_bloom(COLOR_TEXEL(p), (vec2(p - bloom_origin) + 0.5) / vec2(bloom_size));
 #ifdef WRITE_DEPTH
     float depth = depth_of(p);
     gl_FragDepth = depth;

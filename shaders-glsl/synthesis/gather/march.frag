@@ -10,6 +10,11 @@
 #include "include/segments.glsl"
 #ifdef BLOOM
 #include "include/bloom.glsl"
+uniform vec4 bloom_place;  // from texture coordinates of the source to those of its bloom: scale, offset
+
+vec4 with_source_bloom(vec4 color, vec2 at) {
+    return with_bloom(color, at * bloom_place.xy + bloom_place.zw);
+}
 #endif
 
 layout(location = 0) out vec4 color;
@@ -39,7 +44,7 @@ vec4 sample_planar(vec3 affine, out Surface surface) {
 #endif
     vec2 at = vec2(place, row_at(0.0));
 #ifdef BLOOM
-    return with_bloom(color_sample(at), at);
+    return with_source_bloom(color_sample(at), at);
 #else
     return color_sample(at);
 #endif
@@ -73,7 +78,7 @@ vec4 searched(uint span, out Surface surface) {
     }
 #endif
 #ifdef BLOOM
-    seen = with_bloom(seen, vec2(column_at(surface.source), row_at(0.0)));
+    seen = with_source_bloom(seen, vec2(column_at(surface.source), row_at(0.0)));
 #endif
     return seen;
 }

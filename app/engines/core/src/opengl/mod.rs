@@ -16,6 +16,8 @@ mod composer;
 mod guessed_depth;
 mod pipeline;
 
+use glam::{Vec2, Vec4};
+
 use crate::synthesis::backend::{HoleMarks, Places, WarpKind, map_sizes};
 use crate::synthesis::{HoleMark, Holes, Uniforms};
 use yoro_gl::{Format, Image, Program};
@@ -84,11 +86,26 @@ pub struct Source {
 /// Bloom that is not yet part of a source's colours.
 #[derive(Clone, Copy, Debug)]
 pub struct Bloom {
-    /// Scene-referred light in linear RGB, over the same area as the source's textures, of any size. It is sampled with
-    /// the filter of the texture.
+    /// Scene-referred light in linear RGB, of any size. It is sampled with the filter of the texture, whose edges are
+    /// clamped.
     pub texture: glow::Texture,
     /// The factor on the texture's values, the exposure included.
     pub strength: f32,
+    /// Lower left corner, in pixels of the source, of the rectangle that the texture covers. Beyond it, the source has the
+    /// light of the rectangle's border.
+    pub origin: [u32; 2],
+    /// Width and height of the rectangle in pixels.
+    pub size: [u32; 2],
+}
+
+impl Bloom {
+    /// Returns the scale and the offset from the texture coordinates of a source at these places to those of its bloom.
+    fn place(&self, places: &Places) -> Vec4 {
+        let vector = |v: [u32; 2]| Vec2::from(v.map(|n| n as f32));
+        let size = vector(self.size);
+        let origin = vector(places.source_origin) + vector(self.origin);
+        (vector(places.image_size) / size, -origin / size).into()
+    }
 }
 
 impl Source {

@@ -229,7 +229,8 @@ impl<W: WarpKind> Pipeline<W> {
             gl.read_stored();
         }
         let shaders = W::of(&SHADERS);
-        let uniforms = warp.uniforms(&source.places(warp.sizes()[0], target, self.options.parts));
+        let places = source.places(warp.sizes()[0], target, self.options.parts);
+        let uniforms = warp.uniforms(&places);
         let begin = |program: &Program| {
             self.options.bind_source(program.bind(), source);
             uniforms.set(program);
@@ -251,17 +252,20 @@ impl<W: WarpKind> Pipeline<W> {
         let march = gl.pass(shaders.march).read("depth_map", depth).read("color_map", color);
         let mut march = march.read("tile_map", tile_map).read("span_map", span_map);
         let bloom = source.bloom.filter(|_| self.options.bloom);
-        if bloom.is_some() {
-            // Its size is not known here; a blurred image needs no more than half the pixels along each axis.
-            march = march.read("bloom", Image { size: color.size.map(|n| n.div_ceil(2)), ..color });
+        if let Some(Bloom { size, .. }) = bloom {
+            // The texture's size is not known here; a blurred image needs no more than half the pixels along each axis.
+            march = march.read("bloom", Image { size: size.map(|n| n.div_ceil(2)), ..color });
         }
         march = march.write(target_images(target, self.outputs));
         march.in_tile(mark_image(target, self.outputs)).run(|| {
             begin(&self.march);
             self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
             self.march.texture("span_map", 3, self.span_map.color(0).raw());
-            if let Some(Bloom { texture, strength }) = bloom {
-                self.march.texture("bloom", 4, texture).set("bloom_strength", strength);
+            if let Some(bloom) = bloom {
+                self.march
+                    .texture("bloom", 4, bloom.texture)
+                    .set("bloom_strength", bloom.strength)
+                    .set("bloom_place", bloom.place(&places));
             }
             match warp.marks(self.outputs.holes) {
                 Some(marks) => draw_open(gl, target, self.outputs, marks),

@@ -51,7 +51,7 @@ impl StereoMethod for ShadingReprojection {
         let disparity_at_1_m = (pair.focal_length_pixels() * pair.ipd()).abs();
         let [eye, other] = [pair.dominant, pair.dominant.other()];
         let (view, other_view) = (pair.view(eye), pair.view(other));
-        renderer.draw_dominant(dominant, &frame.scene, &view)?;
+        renderer.draw_plain(dominant, &frame.scene, &view, None)?;
         renderer.ink_beside(dominant, &view)?;
         renderer.render_bloom(dominant, &view, Eye::Left);
         let from = Reprojection {

@@ -159,7 +159,8 @@ impl StereoMethod for Synthesized {
         };
         // Filled holes take their colours from beyond the border, too.
         let known = if renders_holes { Known::Border(&views.warp) } else { Known::Nothing };
-        let is_shown = renderer.draw_source(targets, &frame.scene, &views.source, known, shown.as_ref())?;
+        let seen = Rectangle { origin: views.dominant_crop, size: pair.size };
+        let is_shown = renderer.draw_source(targets, &frame.scene, &views.source, seen, known, shown.as_ref())?;
         let is_composited = composites_first && renderer.has_composite();
         if is_composited {
             let to = Destination::whole(targets.complete_picture(views.source.size)?);
@@ -174,11 +175,10 @@ impl StereoMethod for Synthesized {
         if let Some(guess) = guess {
             source = guess.guess(source, &views.warp)?;
         }
-        source.bloom = targets
-            .bloom
-            .as_ref()
-            .filter(|_| !is_composited)
-            .map(|bloom| Bloom { texture: bloom.result().raw(), strength: renderer.bloom_strength() });
+        source.bloom = targets.bloom.as_ref().filter(|_| !is_composited).map(|bloom| {
+            let (texture, strength) = (bloom.result().raw(), renderer.bloom_strength());
+            Bloom { texture, strength, origin: bloom.part().origin, size: bloom.part().size }
+        });
         // The other eye first: both are finished in the same samples.
         let vectors = renders_holes && frame.to(other).motion.is_some();
         let keeps_depth = frame.wants_depth(other) || vectors;
@@ -206,7 +206,6 @@ impl StereoMethod for Synthesized {
         frame.measure_depth(&depth)?;
         frame.write_depth(dominant, &depth);
         if let Some(shown) = shown.filter(|_| is_shown) {
-            let seen = Rectangle { origin: views.dominant_crop, size: pair.size };
             renderer.draw_over_source(targets, &frame.scene, &views.source, seen, &shown)?;
         } else {
             let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;

@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use glam::{Vec2, Vec4};
 
+use super::rectangle::Rectangle;
 use yoro_gl::{
     Blend, Context, Filter, Format, GlError, Image, Pass, Program, RasterState, RenderTarget, ShaderSource,
     Texture,
@@ -11,12 +12,13 @@ use yoro_gl::{
 
 /// Share of the bloom that is added to the picture.
 pub const STRENGTH: f32 = 0.12;
-/// Levels of the pyramid; the first has half the view's size.
+/// Levels of the pyramid; the first has half the size of what shines.
 const LEVELS: usize = 5;
 
 /// The pyramid of images.
 pub struct BloomTargets {
     levels: [RenderTarget; LEVELS],
+    part: Rectangle,
 }
 
 fn level_size(size: [u32; 2], level: usize) -> [u32; 2] {
@@ -28,15 +30,22 @@ impl BloomTargets {
     pub fn new(gl: &Rc<Context>) -> Result<BloomTargets, GlError> {
         let format = hdr_format(gl);
         let level = || RenderTarget::new(gl, [1, 1], &[(format, Filter::Linear)], None);
-        Ok(BloomTargets { levels: [level()?, level()?, level()?, level()?, level()?] })
+        let part = Rectangle { origin: [0, 0], size: [1, 1] };
+        Ok(BloomTargets { levels: [level()?, level()?, level()?, level()?, level()?], part })
     }
 
-    /// Fits the targets to a view of `size` pixels.
-    pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
-        self.levels.iter_mut().enumerate().try_for_each(|(i, level)| level.resize(level_size(size, i)))
+    /// Fits the targets to a part of a view.
+    pub fn fit(&mut self, part: Rectangle) -> Result<(), GlError> {
+        self.part = part;
+        self.levels.iter_mut().enumerate().try_for_each(|(i, level)| level.resize(level_size(part.size, i)))
     }
 
-    /// Returns the finished bloom, half the view's size.
+    /// Returns the part of the view that shines, from the view's own corner. Beyond it, a view has the light of its border.
+    pub fn part(&self) -> Rectangle {
+        self.part
+    }
+
+    /// Returns the finished bloom, half the part's size.
     pub fn result(&self) -> &Texture {
         self.levels[0].color(0)
     }
@@ -74,9 +83,9 @@ pub struct Shining<'a> {
     pub picture: &'a Texture,
     /// The layer, if the picture is an array.
     pub layer: Option<u32>,
-    /// Lower left corner of the view in the picture, in pixels.
+    /// Lower left corner of the part in the picture, in pixels.
     pub origin: [u32; 2],
-    /// Width and height of the view.
+    /// Width and height of the part.
     pub size: [u32; 2],
 }
 

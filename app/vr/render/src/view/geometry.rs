@@ -11,15 +11,6 @@ use super::uniforms::{depth_test, eye_to_clip};
 use yoro::eyes::{DepthRange, Eye, View};
 use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, StencilTest};
 
-/// Which of the opaque triangles are drawn.
-#[derive(Clone, Copy)]
-pub enum Surfaces<'a> {
-    /// Clusters that a culler lets through, for one view.
-    Selected(&'a Culler),
-    /// Surfaces between two distances in metres, drawn at the same depth as in the whole view.
-    Slice([f32; 2]),
-}
-
 /// A variant of the programs that draw triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variant {
@@ -142,42 +133,20 @@ impl GeometryPass {
         self.programs.iter().flatten()
     }
 
-    /// Draws into an image of the pass's layout: one view, or both eyes, which must have the same size and depth range.
-    pub fn draw(&self, scene: &GpuScene, views: &[View], surfaces: &Surfaces) {
+    /// Draws into an image of the pass's layout: one view, or both eyes, which must have the same size and depth range. Of a
+    /// slice between two distances in metres, surfaces have the same depth as in the whole view.
+    pub fn draw(&self, scene: &GpuScene, views: &[View], slice: Option<[f32; 2]>) {
         let Some(first) = views.first() else { return };
-        match *surfaces {
-            Surfaces::Selected(culler) => {
-                let eyes = Eyes::new(self.variant.layout, &[*first; 2]);
-                self.draw_culled(scene, first, std::slice::from_ref(culler), &eyes, [0.0, 1.0]);
-            }
-            Surfaces::Slice([near, far]) => {
-                let depth = DepthRange { near, far, ..first.depth };
-                let sliced: [View; 2] =
-                    std::array::from_fn(|i| View { depth, ..*views.get(i).unwrap_or(first) });
-                let cullers = sliced.map(|view| Culler::of_view(&view));
-                let eyes = Eyes::new(self.variant.layout, &sliced);
-                self.draw_culled(
-                    scene,
-                    first,
-                    &cullers[..views.len()],
-                    &eyes,
-                    window(&first.depth, [near, far]),
-                );
-            }
-        }
-    }
-
-    fn draw_culled(
-        &self,
-        scene: &GpuScene,
-        view: &View,
-        cullers: &[Culler],
-        eyes: &Eyes,
-        depth_window: [f32; 2],
-    ) {
-        let depth = depth_test(view.depth.convention);
+        let [near, far] = slice.unwrap_or([first.depth.near, first.depth.far]);
+        let range = DepthRange { near, far, ..first.depth };
+        let sliced: [View; 2] =
+            std::array::from_fn(|i| View { depth: range, ..*views.get(i).unwrap_or(first) });
+        let cullers = sliced.map(|view| Culler::of_view(&view));
+        let cullers = &cullers[..views.len()];
+        let eyes = Eyes::new(self.variant.layout, &sliced);
+        let depth = depth_test(first.depth.convention);
         let stencil = self.variant.stencil();
-        self.gl.set_depth_window(depth_window);
+        self.gl.set_depth_window(window(&first.depth, [near, far]));
         if eyes.are_clipped() {
             self.gl.set_clip_distance(true);
         }

@@ -4,8 +4,7 @@ use std::rc::Rc;
 
 use glam::{Vec2, Vec4};
 
-use super::cluster::Culler;
-use super::geometry::{Surfaces, Variant};
+use super::geometry::Variant;
 use super::layout::Layout;
 use super::lit::LitScene;
 use super::renderer::Renderer;
@@ -73,9 +72,8 @@ impl Renderer {
         let image = |format| Image { samples, ..to.image(format) };
         pass.in_tile([Format::Rgba8, MARKED_DEPTH].map(image)).run(|| {
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
-            let culler = Culler::of_view(view);
             let bloom = |program: &Program| self.set_hole_bloom(program, source);
-            self.draw_opaque(variant, &light, views, &Surfaces::Selected(&culler), bloom);
+            self.draw_opaque(variant, &light, views, None, bloom);
             self.draw_sky(variant, &light, views, bloom);
         });
     }
@@ -83,12 +81,14 @@ impl Renderer {
     /// Sets the uniforms of `include/hole_bloom.glsl`.
     fn set_hole_bloom(&self, program: &Program, HoleSource { targets, warp }: &HoleSource) {
         let Some(bloom) = targets.bloom.as_ref().filter(|_| self.has_composite()) else { return };
-        let (law, size) = (warp.law, Vec2::from(warp.source_size.map(|n| n as f32)));
+        let (law, part) = (warp.law, bloom.part());
+        let [left, bottom] = part.origin.map(|n| n as f32);
+        let rows = warp.row_offset as f32;
         program
             .texture("bloom", FREE_UNIT + 1, bloom.result().raw())
             .set("bloom_strength", self.bloom_strength())
-            .set("to_view", Vec4::new(law.offset as f32, law.scale as f32, warp.row_offset as f32, 0.0))
-            .set("view_texel", 1.0 / size);
+            .set("to_bloom", Vec4::new(law.offset as f32 + left, law.scale as f32, rows + bottom, 0.0))
+            .set("bloom_texel", 1.0 / Vec2::from(part.size.map(|n| n as f32)));
     }
 
     /// Writes an eye that was synthesized with outlines into `to`, which has this many samples in each pixel, and renders its

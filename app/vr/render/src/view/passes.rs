@@ -3,9 +3,8 @@
 use glam::{IVec2, Mat3, Vec2, Vec3};
 
 use super::bloom::Shining;
-use super::cluster::Culler;
 use super::depth::DepthImage;
-use super::geometry::{Surfaces, Variant};
+use super::geometry::Variant;
 use super::layout::Layout;
 use super::light_tiles::LightTiles;
 use super::lights::Lights;
@@ -102,13 +101,13 @@ impl Renderer {
         Variant { layout, carried: targets.carries, ..Variant::plain(samples) }
     }
 
-    /// Clears the targets, and draws a part of the scene and the sky behind it.
+    /// Clears the targets, and draws the scene, or a slice of it, and the sky behind it.
     pub(super) fn draw_on_sky(
         &self,
         targets: &mut Targets,
         scene: &LitScene,
         views: &[View],
-        surfaces: &Surfaces,
+        slice: Option<[f32; 2]>,
         known: Known,
     ) {
         let view = &views[0];
@@ -125,7 +124,7 @@ impl Renderer {
             }
             let variant =
                 Variant { reprojected: matches!(known, Known::Colors(_)), ..Renderer::variant(targets) };
-            self.draw_opaque(variant, &light, views, surfaces, |program| {
+            self.draw_opaque(variant, &light, views, slice, |program| {
                 if let Known::Colors(from) = known {
                     set_reprojection(program, from, view);
                 }
@@ -134,13 +133,13 @@ impl Renderer {
         });
     }
 
-    /// Draws and lights the opaque surfaces that nothing in the bound framebuffer hides.
+    /// Draws and lights the opaque surfaces, or a slice of them, that nothing in the bound framebuffer hides.
     pub(super) fn draw_opaque(
         &self,
         variant: Variant,
         light: &Illumination,
         views: &[View],
-        surfaces: &Surfaces,
+        slice: Option<[f32; 2]>,
         more: impl Fn(&Program),
     ) {
         let Some(pass) = self.geometry.iter().find(|pass| pass.variant == variant) else { return };
@@ -148,7 +147,7 @@ impl Renderer {
             light.set(program.bind());
             more(program);
         });
-        pass.draw(light.scene, views, surfaces);
+        pass.draw(light.scene, views, slice);
     }
 
     /// Draws the sky where nothing was drawn.
@@ -443,14 +442,16 @@ impl Renderer {
         }
     }
 
-    /// Computes the bloom of an eye's image in the targets.
+    /// Computes the bloom of an eye's image in the targets, as far as it [shines](Targets::fit).
     pub(crate) fn render_bloom(&self, targets: &Targets, view: &View, eye: Eye) {
         if let Some((pass, bloom)) = self.bloom.as_ref().zip(targets.bloom.as_ref()) {
+            let corner = targets.layout.origin(view.size, eye);
+            let Rectangle { origin, size } = bloom.part();
             let shining = Shining {
                 picture: targets.color().color(0),
                 layer: targets.color_layer(eye),
-                origin: targets.layout.origin(view.size, eye),
-                size: view.size,
+                origin: [0, 1].map(|i| corner[i] + origin[i]),
+                size,
             };
             pass.run(bloom, &shining, self.settings.exposure);
         }
@@ -515,16 +516,17 @@ impl Renderer {
             };
             program
                 .set("color_layer", layer.unwrap_or(0) as i32)
-                .set("offset", IVec2::from(offset))
-                .set("view_origin", IVec2::from(corner.map(|n| n as i32)))
-                .set("view_size", IVec2::from(view.size.map(|n| n as i32)));
+                .set("offset", IVec2::from(offset));
             if let Some(image) = image {
                 program.texture_of("depth_map", 1, image.texture);
             }
             if let Some(bloom) = bloom {
+                let Rectangle { origin, size } = bloom.part();
                 program
                     .texture("bloom", 2, bloom.result().raw())
-                    .set("bloom_strength", self.bloom_strength());
+                    .set("bloom_strength", self.bloom_strength())
+                    .set("bloom_origin", IVec2::from([0, 1].map(|i| (corner[i] + origin[i]) as i32)))
+                    .set("bloom_size", IVec2::from(size.map(|n| n as i32)));
             }
             for part in region.rectangles() {
                 self.gl.set_viewport([0, 1].map(|i| to.origin[i] + part.origin[i]), part.size);
@@ -553,17 +555,17 @@ impl Renderer {
         });
     }
 
-    /// Renders the surfaces in a slice (near and far plane in metres) and the sky behind it, without bloom and
-    /// outlines. [`Renderer::draw_near`] completes the view.
-    pub(crate) fn draw_far(
+    /// Renders opaque surfaces, or a slice of them (near and far plane in metres), and the sky behind them, without bloom
+    /// and outlines, for [`Renderer::draw_near`] or [`Renderer::draw_reprojected`].
+    pub(crate) fn draw_plain(
         &self,
         targets: &mut Targets,
         scene: &LitScene,
         view: &View,
-        slice: [f32; 2],
+        slice: Option<[f32; 2]>,
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(true), None)?;
-        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Slice(slice), Known::Nothing);
+        self.draw_on_sky(targets, scene, &[*view], slice, Known::Nothing);
         self.resolve(targets, view, true, false, None)
     }
 
@@ -584,28 +586,14 @@ impl Renderer {
         targets.declare(light.declare(self.gl.pass("surfaces"))).run(|| {
             let to = targets.destination(view.size);
             self.load(far, far_view, crop, targets, &to);
-            if let Some(slice) = slice {
-                self.draw_opaque(Renderer::variant(targets), &light, views, &Surfaces::Slice(slice), |_| {});
+            if slice.is_some() {
+                self.draw_opaque(Renderer::variant(targets), &light, views, slice, |_| {});
             }
         });
         self.draw_transparent(targets, scene, views);
         self.resolve(targets, view, depth, self.ink, None)?;
         self.render_bloom(targets, view, Eye::Left);
         Ok(())
-    }
-
-    /// Renders the dominant eye so that [`Renderer::draw_reprojected`] can take its colours: the resolved picture is
-    /// without outlines, which are drawn beside it.
-    pub(crate) fn draw_dominant(
-        &self,
-        targets: &mut Targets,
-        scene: &LitScene,
-        view: &View,
-    ) -> Result<(), GlError> {
-        targets.fit(view, scene.detail(view), self.needs(true), None)?;
-        let culler = Culler::of_view(view);
-        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler), Known::Nothing);
-        self.resolve(targets, view, true, false, None)
     }
 
     /// Renders the second eye, and takes the colours of surfaces that the dominant eye sees from its image.
@@ -618,8 +606,7 @@ impl Renderer {
         depth: bool,
     ) -> Result<(), GlError> {
         targets.fit(view, scene.detail(view), self.needs(depth), None)?;
-        let culler = Culler::of_view(view);
-        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler), Known::Colors(from));
+        self.draw_on_sky(targets, scene, &[*view], None, Known::Colors(from));
         self.draw_transparent(targets, scene, std::slice::from_ref(view));
         self.resolve(targets, view, depth, self.ink, None)?;
         self.render_bloom(targets, view, Eye::Left);

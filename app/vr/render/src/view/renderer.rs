@@ -9,13 +9,13 @@ use std::rc::Rc;
 
 use super::bloom::{self, BloomPass};
 use super::carry::CarryPass;
-use super::cluster::Culler;
 use super::depth::{DepthCopy, DepthImage, DepthResolve};
-use super::geometry::{GeometryPass, Surfaces, Variant};
+use super::geometry::{GeometryPass, Variant};
 use super::layout::Layout;
 use super::lights::Lights;
 use super::lit::LitScene;
 use super::passes::Known;
+use super::rectangle::Rectangle;
 use super::scene::GpuScene;
 use super::settings::{MAX_POINT_LIGHTS, RenderSettings};
 use super::shadow::ShadowMap;
@@ -189,7 +189,8 @@ impl Renderer {
         view: &View,
     ) -> Result<RenderedView<'a>, GlError> {
         let targets = self.fitting(targets, scene)?;
-        self.draw_source(targets, &scene.into(), view, Known::Nothing, None)?;
+        let whole = Rectangle { origin: [0, 0], size: view.size };
+        self.draw_source(targets, &scene.into(), view, whole, Known::Nothing, None)?;
         self.complete(targets, view)
     }
 
@@ -401,20 +402,21 @@ impl Renderer {
 
 /// What methods use to draw.
 impl Renderer {
-    /// Renders the opaque part of a view for synthesis: its average colour without bloom, its nearest depth, and its
-    /// bloom. Returns true if the picture is in `to`, which may be given if nothing [follows](Renderer::is_complete) the
+    /// Renders the opaque part of a view for synthesis: its average colour without bloom, its nearest depth, and the
+    /// bloom of what an eye sees of it. Returns true if the picture is in `to`, which may be given if nothing [follows](Renderer::is_complete) the
     /// surfaces.
     pub(crate) fn draw_source(
         &self,
         targets: &mut Targets,
         scene: &LitScene,
         view: &View,
+        seen: Rectangle,
         known: Known,
         to: Option<&EyeTarget>,
     ) -> Result<bool, GlError> {
-        let direct = targets.fit(view, scene.detail(view), self.needs(true), to)?;
-        let culler = Culler::of_view(view);
-        self.draw_on_sky(targets, scene, &[*view], &Surfaces::Selected(&culler), known);
+        let needs = Needs { bloom: Some(seen), ..self.needs(true) };
+        let direct = targets.fit(view, scene.detail(view), needs, to)?;
+        self.draw_on_sky(targets, scene, &[*view], None, known);
         self.resolve(targets, view, true, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
         self.render_bloom(targets, view, Eye::Left);
         Ok(direct)
@@ -433,12 +435,7 @@ impl Renderer {
         let view = &views[0];
         let to = to.filter(|_| self.is_complete());
         let direct = targets.fit(view, scene.detail(view), self.needs(depth), to)?;
-        let culler = Culler::of_view(view);
-        let surfaces = match views.len() {
-            1 => Surfaces::Selected(&culler),
-            _ => Surfaces::Slice([view.depth.near, view.depth.far]),
-        };
-        self.draw_on_sky(targets, scene, views, &surfaces, Known::Nothing);
+        self.draw_on_sky(targets, scene, views, None, Known::Nothing);
         self.draw_transparent(targets, scene, views);
         self.resolve(targets, view, depth, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
         if views.len() == 1 && !direct {
@@ -449,6 +446,7 @@ impl Renderer {
 
     /// Returns what a view needs whose depth is read or not.
     pub(super) fn needs(&self, depth: bool) -> Needs {
-        Needs { depth, samples: self.depth_resolve == DepthResolve::Samples && (depth || self.ink) }
+        let samples = self.depth_resolve == DepthResolve::Samples && (depth || self.ink);
+        Needs { depth, samples, bloom: None }
     }
 }

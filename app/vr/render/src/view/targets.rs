@@ -5,6 +5,7 @@ use std::rc::Rc;
 use super::bloom::BloomTargets;
 use super::depth::{DepthImage, DepthResolve};
 use super::layout::Layout;
+use super::rectangle::Rectangle;
 use super::settings::{RenderSettings, SAMPLE_DEPTH};
 use crate::stereo::EyeTarget;
 use yoro::eyes::{DepthConvention, Eye, View};
@@ -23,6 +24,8 @@ pub struct Needs {
     pub depth: bool,
     /// True if samples are read after drawing, for outlines.
     pub samples: bool,
+    /// The part that shines; the whole view if `None`.
+    pub bloom: Option<Rectangle>,
 }
 
 /// The framebuffer of the current view.
@@ -132,7 +135,8 @@ impl Targets {
         self.convention = view.depth.convention;
         let whole = self.layout.texture_size(size);
         self.resolved.resize(whole)?;
-        self.bloom.as_mut().map_or(Ok(()), |bloom| bloom.resize(size))?;
+        let shining = needs.bloom.unwrap_or(Rectangle { origin: [0, 0], size });
+        self.bloom.as_mut().map_or(Ok(()), |bloom| bloom.fit(shining))?;
         self.has_depth = false;
         self.carries = self.samples > 1
             && needs.depth
