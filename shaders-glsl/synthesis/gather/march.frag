@@ -29,18 +29,24 @@ int source_row() {
 // The maximum number of steps before the search over segments: as many as a wave should wait for.
 const float FIRST_STEPS = 2.0;
 
-// Colour and surface of a pixel whose tile has a law.
-vec4 sample_planar(vec3 affine, out Surface surface) {
+// Colour and surface of a pixel whose tile has a law. The surface may end in the tile's first or last row.
+vec4 sample_planar(vec3 affine, bool may_end, out Surface surface) {
     float place = affine.x + affine.y * gl_FragCoord.x + affine.z * gl_FragCoord.y;
-#if defined(WRITE_DEPTH) || defined(SOURCE_MAP) || defined(MOTION)
+#if defined(WRITE_DEPTH) || defined(SOURCE_MAP) || defined(MOTION) || defined(OPEN_HOLES)
     surface.source = clamp((place - columns.y) / columns.x - 0.5, 0.0, float(source_size.x - 1));
     // The surface's own displacement tells its depth, so that none is read, unless nothing is displaced.
-    surface.depth = (origins.x * gl_FragCoord.x + origins.y - surface.source) / law.y;
+    float moved = origins.x * gl_FragCoord.x + origins.y - surface.source;
+    surface.depth = moved / law.y;
     if (law.y == 0.0) {
         vec2 depths = depth_pair(floor(surface.source));
         surface.depth = mix(depths.x, depths.y, fract(surface.source));
     }
     surface.hole = false;
+#endif
+#ifdef OPEN_HOLES
+    if (may_end && ends_in_row(floor(surface.source), moved)) {
+        discard;
+    }
 #endif
     vec2 at = vec2(place, row_at(0.0));
 #ifdef BLOOM
@@ -87,7 +93,7 @@ void main() {
     uvec4 span = pixel_span();
     Surface surface;
     if (span.y != 0u) {
-        color = sample_planar(uintBitsToFloat(span.xyz), surface);
+        color = sample_planar(uintBitsToFloat(span.xyz), span.w != 0u, surface);
     } else {
         color = searched(span.x, surface);
     }

@@ -8,7 +8,8 @@ TEXTURE(2) uniform highp usampler2D tile_map;
 
 #include "include/laws.glsl"
 
-// A span with 0 in its second component, or a law, whose second component is never 0.
+// A span with 0 in its second component, or a law, whose second component is never 0. The last component of a law
+// is 1 if the surface may end at the tiles above or below.
 layout(location = 0) out uvec4 span;
 
 void main() {
@@ -28,6 +29,10 @@ void main() {
     // The first and the last tile that may land here.
     int left = tiles;
     int right = 0;
+    // The least displacements of these tiles, and of those above and below.
+    uint farthest_here = 0xffffu;
+    uint farthest_beside = 0xffffu;
+    ivec2 beside = clamp(tile.y + ivec2(-1, 1), 0, (source_size.y - 1) / TILE.y);
     for (int s = from; s <= to; ++s) {
         uint moved = texelFetch(tile_map, ivec2(s, tile.y), 0).r;
         int lowest = max(int(moved & 0xffffu), least);
@@ -37,6 +42,10 @@ void main() {
             high = max(high, highest);
             left = min(left, s);
             right = s;
+            uint below = texelFetch(tile_map, ivec2(s, beside.x), 0).r & 0xffffu;
+            uint above = texelFetch(tile_map, ivec2(s, beside.y), 0).r & 0xffffu;
+            farthest_here = min(farthest_here, moved & 0xffffu);
+            farthest_beside = min(farthest_beside, min(below, above));
         }
         least -= PITCH;
         most -= PITCH;
@@ -50,6 +59,9 @@ void main() {
     span = uvec4(search, 0u, 0u, 0u);
     vec3 affine = tile_plane(tile, left, right);
     if (affine.y != 0.0) {
-        span.xyz = floatBitsToUint(affine);
+        // On the law's plane, they are farther by no more than this.
+        float rise = abs(affine.z / columns.x) * float(TILE.y);
+        bool ends = float(farthest_here) - float(farthest_beside) > (rise + ROW_GAP) * TILE_UNITS;
+        span = uvec4(floatBitsToUint(affine), uint(ends));
     }
 }

@@ -39,6 +39,8 @@ pub struct March {
     pub bloom: bool,
     /// True if it writes depth, for surfaces that are drawn over the synthesized eye.
     pub depth: bool,
+    /// True if it leaves holes open.
+    pub open: bool,
 }
 
 impl March {
@@ -49,54 +51,25 @@ impl March {
         defines.fold(March::default(), |march, name| March {
             bloom: march.bloom || name == "BLOOM",
             depth: march.depth || name == "WRITE_DEPTH",
+            open: march.open || name == "OPEN_HOLES",
         })
     }
 }
 
-/// How often the march's parts run: for one pixel, or the maximum over a wave's pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Trips {
-    /// 1 if the pixel's tile has a law.
-    law: f64,
-    /// 1 if the pixel's tile has no law.
-    searches: f64,
-    short: f64,
-    /// 1 if the pixel goes the long way.
-    takes_long_way: f64,
-    segments: f64,
-    events: f64,
-    /// Steps to the crossing of a segment.
-    crossings: f64,
-    holes: f64,
-}
+/// The parts of the march that are counted.
+const PARTS: [&str; 9] =
+    ["law", "short way", "short step", "long way", "segment", "event", "crossing", "fill", OPEN_LAW];
+/// The part of a law whose surface may end at the tile, if holes are left open.
+const OPEN_LAW: &str = "open law";
+/// How often each of them runs: for one pixel, or the maximum over a wave's pixels.
+type Trips = [f64; 9];
 
-impl Trips {
-    fn of([ways, segments, events, crossings]: [u8; 4]) -> Trips {
-        let law = f64::from(ways >> 5 & 1);
-        Trips {
-            law,
-            searches: 1.0 - law,
-            short: f64::from(ways & 7),
-            takes_long_way: f64::from(ways >> 4 & 1),
-            segments: segments.into(),
-            events: events.into(),
-            crossings: crossings.into(),
-            holes: f64::from(ways >> 3 & 1),
-        }
-    }
-
-    fn max(self, other: Trips) -> Trips {
-        Trips {
-            law: self.law.max(other.law),
-            searches: self.searches.max(other.searches),
-            short: self.short.max(other.short),
-            takes_long_way: self.takes_long_way.max(other.takes_long_way),
-            segments: self.segments.max(other.segments),
-            events: self.events.max(other.events),
-            crossings: self.crossings.max(other.crossings),
-            holes: self.holes.max(other.holes),
-        }
-    }
+/// Returns the trips of a pixel. Either its tile has a law, or it goes the short way.
+fn trips([ways, segments, events, crossings]: [u8; 4]) -> Trips {
+    let bit = |i: u8| f64::from(ways >> i & 1);
+    let law = bit(5);
+    let [segments, events, crossings] = [segments, events, crossings].map(f64::from);
+    [law, 1.0 - law, f64::from(ways & 7), bit(4), segments, events, crossings, bit(3), law * bit(6)]
 }
 
 /// The costs of the parts of gather's passes on one GPU.
@@ -135,9 +108,11 @@ impl Costs {
         let fill = of("march", &["PARTS=30"], 2)?;
         let all = of("march", &["PARTS=62"], 3)?;
         let depth = of("march", &["WRITE_DEPTH", "PARTS=1"], 0)?;
-        // Bloom reads no depth.
-        let bloom = table.parts("synthesis/gather/march.frag", &["BLOOM", "PARTS=1"])?;
-        let without_bloom = table.parts("synthesis/gather/march.frag", &["PARTS=1"])?;
+        // Bloom reads no depth. What leaves pixels open is compiled for depth of one sample.
+        let more = |name: &str, part: &str| {
+            let of = |macros: &[&str]| table.parts("synthesis/gather/march.frag", macros);
+            anyhow::Ok(of(&[name, part])?.straight.minus(of(&[part])?.straight))
+        };
         // The loop over segments is the second one, the loop to a crossing is the last. Events are handled in two
         // places, one of them before the loop.
         let event = events.loops[1].minus(segments.loops[1]);
@@ -152,7 +127,9 @@ impl Costs {
             ("spans: joint", spans.loops[2]),
             ("march: law", law.straight),
             ("march: depth of a law", depth.straight.minus(law.straight)),
-            ("march: bloom", bloom.straight.minus(without_bloom.straight)),
+            ("march: bloom", more("BLOOM", "PARTS=1")?),
+            ("march: open law", more("OPEN_HOLES", "PARTS=1")?),
+            ("march: open short way", more("OPEN_HOLES", "PARTS=2")?),
             ("march: short way", short.straight),
             ("march: short step", short.loops[0]),
             ("march: long way", long),
@@ -173,20 +150,17 @@ impl Costs {
     /// Returns a lower bound of what a wave executes for each of its pixels: each part as often as the pixel that runs
     /// it most often. Lanes that run parts at different times also wait for each other, which is not counted.
     fn march(&self, trips: Trips, march: March) -> Work {
-        let runs = [
-            ("march: law", trips.law),
-            ("march: depth of a law", if march.depth { trips.law } else { 0.0 }),
+        let [law, short, ..] = trips;
+        let more = [
+            (march.depth, "depth of a law", law),
             // Both ways end with it.
-            ("march: bloom", if march.bloom { trips.law + trips.searches } else { 0.0 }),
-            ("march: short way", trips.searches),
-            ("march: short step", trips.short),
-            ("march: long way", trips.takes_long_way),
-            ("march: segment", trips.segments),
-            ("march: event", trips.events),
-            ("march: crossing", trips.crossings),
-            ("march: fill", trips.holes),
+            (march.bloom, "bloom", law + short),
+            (march.open, "open short way", short),
         ];
-        runs.iter().fold(Work::default(), |sum, (part, times)| sum.plus(*times, self.part(part)))
+        let more = more.into_iter().filter(|(is_on, ..)| *is_on).map(|(_, part, times)| (part, times));
+        let counted = PARTS.into_iter().zip(trips).filter(|(part, _)| march.open || *part != OPEN_LAW);
+        let runs = counted.chain(more);
+        runs.fold(Work::default(), |sum, (part, times)| sum.plus(times, self.part(&format!("march: {part}"))))
     }
 }
 
@@ -266,13 +240,14 @@ impl Counted {
     fn waves(&self, wave: [u32; 2]) -> Vec<Trips> {
         let pixels = self.pixels.as_chunks().0.iter();
         combine(pixels, self.views.target.size[0], wave, |largest: &mut Trips, pixel| {
-            *largest = largest.max(Trips::of(*pixel))
+            let own = trips(*pixel);
+            *largest = std::array::from_fn(|i| largest[i].max(own[i]));
         })
     }
 
     /// Returns the share of the pixels whose tile has a law, 0 to 1.
     pub fn laws(&self) -> f64 {
-        mean(self.waves([1, 1]).iter().map(|trips| trips.law))
+        mean(self.waves([1, 1]).iter().map(|[law, ..]| *law))
     }
 
     /// Returns what a GPU executes with this variant of the march.
@@ -342,18 +317,11 @@ mod tests {
         set(0, 0, [3, 0, 0, 0]);
         set(3, 2, [1 | 8 | 16, 9, 2, 7]);
         set(5, 1, [2, 0, 0, 0]);
+        set(4, 0, [32 | 64, 0, 0, 0]);
         let pair = EyeOptions { size: [6, 3], ..EyeOptions::default() }.pair(Pose::IDENTITY);
         let counts = Counted { pixels, views: pair.synthesis_views(GuardBand::None).unwrap() };
-        let short = Trips { law: 1.0, searches: 1.0, short: 2.0, ..Trips::default() };
-        let long = Trips {
-            short: 3.0,
-            takes_long_way: 1.0,
-            segments: 9.0,
-            events: 2.0,
-            crossings: 7.0,
-            holes: 1.0,
-            ..short
-        };
+        let long = [1.0, 1.0, 3.0, 1.0, 9.0, 2.0, 7.0, 1.0, 0.0];
+        let short = [1.0, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
         assert_eq!(counts.waves([4, 4]), [long, short]);
         assert_eq!(counts.waves([1, 1]).len(), 18);
     }
@@ -365,6 +333,8 @@ mod tests {
             ("march: law", body(30.0, 2.0)),
             ("march: depth of a law", body(5.0, 2.0)),
             ("march: bloom", body(50.0, 1.0)),
+            ("march: open law", body(15.0, 3.0)),
+            ("march: open short way", body(25.0, 4.0)),
             ("march: short way", body(80.0, 3.0)),
             ("march: short step", body(20.0, 1.0)),
             ("march: long way", body(90.0, 2.0)),
@@ -374,13 +344,14 @@ mod tests {
             ("march: fill", body(75.0, 8.0)),
         ];
         let costs = Costs { lanes: 128, parts };
-        let lawful = Trips { law: 1.0, ..Trips::default() };
+        let lawful = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        let all = March { bloom: true, depth: true, open: true };
         assert_eq!(costs.march(lawful, March::default()), body(30.0, 2.0));
-        assert_eq!(costs.march(lawful, March { bloom: true, depth: true }), body(85.0, 5.0));
-        let short = Trips { searches: 1.0, short: 2.0, ..Trips::default() };
+        assert_eq!(costs.march(lawful, all), body(30.0 + 5.0 + 50.0 + 15.0, 2.0 + 2.0 + 1.0 + 3.0));
+        let short = [0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(costs.march(short, March::default()), body(80.0 + 40.0, 3.0 + 2.0));
-        let long =
-            Trips { takes_long_way: 1.0, segments: 3.0, events: 2.0, crossings: 1.0, holes: 1.0, ..short };
+        assert_eq!(costs.march(short, all), body(120.0 + 50.0 + 25.0, 5.0 + 1.0 + 4.0));
+        let long = [0.0, 1.0, 2.0, 1.0, 3.0, 2.0, 1.0, 1.0, 0.0];
         let slots = 80.0 + 40.0 + 90.0 + 180.0 + 80.0 + 70.0 + 75.0;
         assert_eq!(costs.march(long, March::default()), body(slots, 3.0 + 2.0 + 2.0 + 6.0 + 1.0 + 8.0));
     }

@@ -37,16 +37,18 @@ const PARTS: [(u32, &[Patch]); 6] = [
 
 /// What is compiled in parts: macros, and the bits of the parts that are kept. Each adds a part to the one before: the law;
 /// the first steps; the search over segments; events; the fill; crossings.
-const VARIANTS: [(&str, &[u32]); 5] = [
+const VARIANTS: [(&str, &[u32]); 6] = [
     ("", &[1, 2, 6, 14, 30, 62]),
     ("DEPTH_PAIRS", &[1, 2, 6, 14, 30, 62]),
     ("WRITE_DEPTH", &[1]),
     ("DEPTH_PAIRS WRITE_DEPTH", &[1]),
     ("BLOOM", &[1]),
+    ("OPEN_HOLES", &[1, 2]),
 ];
 
 /// The counters, by their index: first steps, segments, holes, events, steps to a segment's crossing, one that is not used,
-/// pixels that search over segments, and pixels with a law. Each is increased after a text.
+/// pixels that search over segments, and pixels with a law. Each is increased after a text. Whether a law's surface may end
+/// is written without a counter.
 const COUNTERS: [(usize, &str, &str); 7] = [
     (0, MARCH, "max(at.b, -1.0) >= at.a; at.x += 1.0) {"),
     (1, SEGMENTS, "while (x <= end && !found) {"),
@@ -63,7 +65,7 @@ const RESULT: (&str, Patch) = (
     MARCH,
     (
         "#ifdef WRITE_DEPTH\n    gl_FragDepth",
-        "    int ways = trips[0] | min(trips[2], 1) << 3 | trips[6] << 4 | trips[7] << 5;\n    \
+        "    int ways = trips[0] | min(trips[2], 1) << 3 | trips[6] << 4 | trips[7] << 5 | int(span.w) << 6;\n    \
          color = vec4(ways, trips[1], trips[3], trips[4]) / 255.0;\n#ifdef WRITE_DEPTH\n    gl_FragDepth",
     ),
 );

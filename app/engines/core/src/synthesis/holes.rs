@@ -7,8 +7,8 @@ pub enum Holes {
     #[default]
     Filled,
     /// Whole pixels are left open for the host to draw its opaque scene in: holes, pixels in which a silhouette is blended
-    /// over what lies behind it, and pixels that show a surface's outermost column, whose colour in the source is partly that
-    /// of the background. They are about 1 to 5 % of an eye.
+    /// over what lies behind it, and pixels that show a surface's outermost column or row, whose colour in the source is
+    /// partly that of the background. They are about 1 to 5 % of an eye.
     ///
     /// The target needs a depth attachment, and a stencil attachment for [`HoleMark::Stencil`]. In the target's rectangle, a
     /// call clears depth to the far plane, and stencil to 0 if that is the mark, and then marks each pixel that it writes. The

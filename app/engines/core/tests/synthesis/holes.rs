@@ -4,9 +4,9 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::laws::{on_every_backend, pair, positions, row, scene};
+use super::laws::{on_every_backend, pair, scene};
 use super::near_boxes;
-use super::reference::gather_row;
+use super::reference::open_pixels;
 use super::state::{OUTPUTS, clean, program, read_depth};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, GuardBand, Warp};
 use yoro::opengl::{AnyView, Context, Destination, Gather, GlError, Motion, Options, Outputs, Source};
@@ -22,7 +22,6 @@ const ORIGIN: [u32; 2] = [7, 5];
 struct Rig {
     gl: Rc<Context>,
     warp: Warp,
-    rgba: Vec<u8>,
     depth: Vec<f32>,
     textures: [Texture; 2],
     target: RenderTarget,
@@ -44,7 +43,7 @@ impl Rig {
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         let size = [0, 1].map(|i| ORIGIN[i] + warp.target_size[i] + 3);
         let target = RenderTarget::new(gl, size, &formats, Some(Format::Depth32FStencil8)).unwrap();
-        Rig { gl: gl.clone(), warp, rgba, depth, textures, target }
+        Rig { gl: gl.clone(), warp, depth, textures, target }
     }
 
     /// Synthesizes, and writes [`OPEN`] into the source map where stencil is 0.
@@ -107,24 +106,6 @@ impl Rig {
             raw.delete_program(open);
         }
     }
-
-    /// Which pixels the reference leaves open, by the target's columns.
-    fn reference(&self) -> Vec<bool> {
-        let [[ws, hs], [wt, ht]] =
-            [self.warp.source_size, self.warp.target_size].map(|s| s.map(|n| n as usize));
-        let mut open = Vec::new();
-        for y in 0..ht {
-            let source_y = (y as i32 - self.warp.row_offset).clamp(0, hs as i32 - 1);
-            let p = positions(row(&self.depth, source_y as usize, ws), &self.warp);
-            let mut entries: Vec<bool> = gather_row(&p, wt).iter().map(|entry| entry.open).collect();
-            if self.warp.target_eye == Eye::Right {
-                entries.reverse();
-            }
-            open.extend(entries);
-        }
-        assert_eq!(self.rgba.len(), ws * hs * 4);
-        open
-    }
 }
 
 fn rigs(gl: &Rc<Context>) -> Vec<Rig> {
@@ -142,8 +123,18 @@ fn rigs(gl: &Rc<Context>) -> Vec<Rig> {
             };
             rigs.push(Rig::new(gl, warp, content));
         }
+        let warp = scattered.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
+        rigs.push(Rig::new(gl, warp, tiled_board(warp.source_size, scattered.depth)));
     }
     rigs
+}
+
+/// Returns the colour and the depth of a board of whole tiles before a wall: only the rows of other tiles tell where it ends.
+fn tiled_board([width, height]: [u32; 2], range: DepthRange) -> (Vec<u8>, Vec<f32>) {
+    let is_board = |at: u32| (32..96).contains(&(at % width)) && (8..24).contains(&(at / width));
+    let pixels = (0..width * height).map(|at| if is_board(at) { ([255; 4], 1.0) } else { ([0; 4], 5.0) });
+    let (rgba, depth): (Vec<[u8; 4]>, Vec<f32>) = pixels.map(|(c, z)| (c, range.depth(z))).unzip();
+    (rgba.concat(), depth)
 }
 
 #[test]
@@ -155,7 +146,7 @@ fn open_pixels_are_those_of_the_reference() {
             let by_depth = rig.run(Holes::Open(HoleMark::Depth));
             let [nearest, farthest] = rig.warp.convention.planes().map(f32::to_bits);
             let (mut count, mut different) = (0, 0);
-            for (at, want) in rig.reference().into_iter().enumerate() {
+            for (at, want) in open_pixels(&rig.depth, &rig.warp).into_iter().enumerate() {
                 let is_open = open.1[at] == OPEN;
                 count += usize::from(is_open);
                 different += usize::from(is_open != want);

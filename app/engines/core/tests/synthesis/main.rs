@@ -67,7 +67,7 @@ fn is_its_reference(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &Warp, w
     for y in 0..warp.target_size[1] as usize {
         let source_y = y as i32 - warp.row_offset;
         let depth_row = row(depth, source_y.clamp(0, last_row) as usize, ws);
-        for (t, entry) in gather_row(&positions(depth_row, warp), wt).iter().enumerate() {
+        for (t, entry) in gather_row(&positions(depth_row, warp), &[], wt).iter().enumerate() {
             let x = if mirrored { wt - 1 - t } else { t };
             let got = result.source_map[y * wt + x];
             let hole = got & SOURCE_MAP_HOLE != 0;

@@ -2,6 +2,7 @@
 //! compute.
 
 use yoro::eyes::{Eye, Warp};
+use yoro_test_support::laws::{positions, row};
 
 /// One target pixel, in forward columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,8 +120,29 @@ fn ends(p: &[f64], x: usize, after: bool) -> bool {
     }
 }
 
-/// Runs the gather pipeline's march for each target pixel, over the whole row.
-pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
+/// Where a row beside is farther by more pixels of displacement than this, a surface ends.
+const ROW_GAP: f64 = 2.0;
+
+/// Returns which pixels of the target a pipeline with open holes leaves open.
+pub fn open_pixels(depth: &[f32], warp: &Warp) -> Vec<bool> {
+    let [[ws, hs], [wt, ht]] = [warp.source_size, warp.target_size].map(|s| s.map(|n| n as i32));
+    let rows = (0..ht).flat_map(|y| {
+        let [at, above, below] = [0, 1, -1].map(|away| {
+            let source_y = (y - warp.row_offset + away).clamp(0, hs - 1);
+            positions(row(depth, source_y as usize, ws as usize), warp)
+        });
+        let mut entries = gather_row(&at, &[above, below], wt as usize);
+        if warp.target_eye == Eye::Right {
+            entries.reverse();
+        }
+        entries
+    });
+    rows.map(|entry| entry.open).collect()
+}
+
+/// Runs the gather pipeline's march for each target pixel, over the whole row. Open pixels depend on the rows beside, too.
+pub fn gather_row(p: &[f64], beside: &[Vec<f64>], width: usize) -> Vec<Entry> {
+    let ends_in_row = |x: usize| beside.iter().any(|row| p[x] - row[x] > ROW_GAP);
     (0..width)
         .map(|t| {
             let target = t as f64;
@@ -143,7 +165,7 @@ pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
                 if b > target {
                     if b - a < MAX_STRETCH {
                         hit = Some((x - 1) as f64 + (target - a) / (b - a));
-                        outermost = ends(p, x - 1, false) || ends(p, x, true);
+                        outermost = ends(p, x - 1, false) || ends(p, x, true) || ends_in_row(x - 1);
                         continue;
                     }
                     if b - target < 1.0 {
@@ -152,7 +174,7 @@ pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
                     let displacement = a - (x - 1) as f64;
                     if target - a < 0.5 {
                         hit = Some((x - 1) as f64);
-                        outermost = ends(p, x - 1, false);
+                        outermost = ends(p, x - 1, false) || ends_in_row(x - 1);
                     } else if edge.is_none_or(|(d, _)| displacement < d) {
                         edge = Some((displacement, x - 1));
                     }
