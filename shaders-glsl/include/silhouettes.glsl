@@ -31,4 +31,4 @@ bool has_rim(float a, float b) {
     return folds(a, b) || (jumps(a, b) && is_torn(a, b) && b < 1.0);
 }
 // Where the row above or below is farther than a surface by more pixels of displacement than this, the surface ends.
-const float ROW_GAP = 2.0;
+const float ROW_GAP = 4.0;

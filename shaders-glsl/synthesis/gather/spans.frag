@@ -29,9 +29,8 @@ void main() {
     // The first and the last tile that may land here.
     int left = tiles;
     int right = 0;
-    // The least displacements of these tiles, and of those above and below.
-    uint farthest_here = 0xffffu;
-    uint farthest_beside = 0xffffu;
+    // How much farther than these tiles those above and below reach.
+    int drop = 0;
     ivec2 beside = clamp(tile.y + ivec2(-1, 1), 0, (source_size.y - 1) / TILE.y);
     for (int s = from; s <= to; ++s) {
         uint moved = texelFetch(tile_map, ivec2(s, tile.y), 0).r;
@@ -42,10 +41,9 @@ void main() {
             high = max(high, highest);
             left = min(left, s);
             right = s;
-            uint below = texelFetch(tile_map, ivec2(s, beside.x), 0).r & 0xffffu;
-            uint above = texelFetch(tile_map, ivec2(s, beside.y), 0).r & 0xffffu;
-            farthest_here = min(farthest_here, moved & 0xffffu);
-            farthest_beside = min(farthest_beside, min(below, above));
+            uint below = texelFetch(tile_map, ivec2(s, beside.x), 0).r;
+            uint above = texelFetch(tile_map, ivec2(s, beside.y), 0).r;
+            drop = max(drop, int(moved & 0xffffu) - int(min(below & 0xffffu, above & 0xffffu)));
         }
         least -= PITCH;
         most -= PITCH;
@@ -59,9 +57,8 @@ void main() {
     span = uvec4(search, 0u, 0u, 0u);
     vec3 affine = tile_plane(tile, left, right);
     if (affine.y != 0.0) {
-        // On the law's plane, they are farther by no more than this.
+        // On the law's plane, they reach farther by no more than the rise from tile to tile.
         float rise = abs(affine.z / columns.x) * float(TILE.y);
-        bool ends = float(farthest_here) - float(farthest_beside) > (rise + ROW_GAP) * TILE_UNITS;
-        span = uvec4(floatBitsToUint(affine), uint(ends));
+        span = uvec4(floatBitsToUint(affine), uint(float(drop) > (rise + ROW_GAP) * TILE_UNITS));
     }
 }

@@ -121,7 +121,7 @@ fn ends(p: &[f64], x: usize, after: bool) -> bool {
 }
 
 /// Where a row beside is farther by more pixels of displacement than this, a surface ends.
-const ROW_GAP: f64 = 2.0;
+const ROW_GAP: f64 = 4.0;
 
 /// Returns which pixels of the target a pipeline with open holes leaves open.
 pub fn open_pixels(depth: &[f32], warp: &Warp) -> Vec<bool> {
