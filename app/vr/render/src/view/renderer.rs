@@ -403,8 +403,8 @@ impl Renderer {
 /// What methods use to draw.
 impl Renderer {
     /// Renders the opaque part of a view for synthesis: its average colour without bloom, its nearest depth, and the
-    /// bloom of what an eye sees of it. Returns true if the picture is in `to`, which may be given if nothing [follows](Renderer::is_complete) the
-    /// surfaces.
+    /// bloom of the part that an eye sees. Returns true if the picture is in `to`, which may be given if nothing
+    /// [follows](Renderer::is_complete) the surfaces.
     pub(crate) fn draw_source(
         &self,
         targets: &mut Targets,
