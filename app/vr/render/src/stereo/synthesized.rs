@@ -160,7 +160,8 @@ impl StereoMethod for Synthesized {
         // Filled holes take their colours from beyond the border, too.
         let known = if renders_holes { Known::Border(&views.warp) } else { Known::Nothing };
         let seen = Rectangle { origin: views.dominant_crop, size: pair.size };
-        let is_shown = renderer.draw_source(targets, &frame.scene, &views.source, seen, known, shown.as_ref())?;
+        let is_shown =
+            renderer.draw_source(targets, &frame.scene, &views.source, seen, known, shown.as_ref())?;
         let is_composited = composites_first && renderer.has_composite();
         if is_composited {
             let to = Destination::whole(targets.complete_picture(views.source.size)?);

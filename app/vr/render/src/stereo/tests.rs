@@ -348,7 +348,8 @@ fn passes_declare_what_they_read_and_write() {
     for settings in [local(), smooth(), RenderSettings { bloom: true, ..smooth() }] {
         let Noted { declared, .. } = note(&settings, scene());
         // What only the guard band shows does not shine.
-        let shining = declared.iter().filter(|pass| pass.name == "bloom").map(|pass| pass.reads[0].image.size);
+        let shining =
+            declared.iter().filter(|pass| pass.name == "bloom").map(|pass| pass.reads[0].image.size);
         assert_eq!(shining.collect::<Vec<_>>(), vec![SIZE; settings.bloom.into()]);
         let writes = declared.iter().flat_map(|pass| &pass.writes);
         let stored =

@@ -514,9 +514,7 @@ impl Renderer {
                 None => program.texture("color_map", 0, targets.picture().0),
                 Some(_) => program.texture_of("color_map", 0, targets.color().color(0)),
             };
-            program
-                .set("color_layer", layer.unwrap_or(0) as i32)
-                .set("offset", IVec2::from(offset));
+            program.set("color_layer", layer.unwrap_or(0) as i32).set("offset", IVec2::from(offset));
             if let Some(image) = image {
                 program.texture_of("depth_map", 1, image.texture);
             }
