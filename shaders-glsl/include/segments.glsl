@@ -73,23 +73,22 @@ float segment_end(float x, int tile_row, bool below, uint shift) {
 }
 
 #ifdef OPEN_HOLES
-// True if the surface ends in the fragment's row, at forward column x, where it is displaced by `moved` from law.x.
-bool ends_in_row(float x, float moved) {
-    float column = column_at(x);
-    float above = law.y * depth_sample(vec2(column, row_at(1.0)));
-    float below = law.y * depth_sample(vec2(column, row_at(-1.0)));
-    return moved - min(above, below) > ROW_GAP;
+// True if the row above or below is farther than the surface that a pixel shows. The outermost pixel of a surface shows
+// something of what lies beside it in the source, and not of what lies there for this eye.
+bool ends_in_row(Surface surface) {
+    float column = column_at(floor(surface.source));
+    float above = law.y * (surface.depth - depth_sample(vec2(column, row_at(1.0))));
+    float below = law.y * (surface.depth - depth_sample(vec2(column, row_at(-1.0))));
+    return max(above, below) > ROW_GAP;
 }
 
 // True if the surface that a pixel shows ends at column x, or at the next one if the pixel shows that, too: the
-// column's neighbour is farther by more than a pixel of displacement; or if it ends in the row. The outermost pixel of a
-// surface shows something of what lies beside it in the source, and not of what lies there for this eye.
+// column's neighbour is farther by more than a pixel of displacement.
 bool is_outermost(float x, vec2 depths, bool shows_next) {
     float before = depth_sample(vec2(column_at(x - 1.0), row_at(0.0)));
     float after = depth_sample(vec2(column_at(x + 2.0), row_at(0.0)));
     float pixel = MAX_STRETCH - 1.0;
-    return law.y * (depths.x - before) >= pixel || (shows_next && law.y * (depths.y - after) > pixel)
-        || ends_in_row(x, law.y * depths.x);
+    return law.y * (depths.x - before) >= pixel || (shows_next && law.y * (depths.y - after) > pixel);
 }
 #endif
 

@@ -29,24 +29,18 @@ int source_row() {
 // The maximum number of steps before the search over segments: as many as a wave should wait for.
 const float FIRST_STEPS = 2.0;
 
-// Colour and surface of a pixel whose tile has a law. The surface may end in the tile's first or last row.
-vec4 sample_planar(vec3 affine, bool may_end, out Surface surface) {
+// Colour and surface of a pixel whose tile has a law.
+vec4 sample_planar(vec3 affine, out Surface surface) {
     float place = affine.x + affine.y * gl_FragCoord.x + affine.z * gl_FragCoord.y;
 #if defined(WRITE_DEPTH) || defined(SOURCE_MAP) || defined(MOTION) || defined(OPEN_HOLES)
     surface.source = clamp((place - columns.y) / columns.x - 0.5, 0.0, float(source_size.x - 1));
     // The surface's own displacement tells its depth, so that none is read, unless nothing is displaced.
-    float moved = origins.x * gl_FragCoord.x + origins.y - surface.source;
-    surface.depth = moved / law.y;
+    surface.depth = (origins.x * gl_FragCoord.x + origins.y - surface.source) / law.y;
     if (law.y == 0.0) {
         vec2 depths = depth_pair(floor(surface.source));
         surface.depth = mix(depths.x, depths.y, fract(surface.source));
     }
     surface.hole = false;
-#endif
-#ifdef OPEN_HOLES
-    if (may_end && ends_in_row(floor(surface.source), moved)) {
-        discard;
-    }
 #endif
     vec2 at = vec2(place, row_at(0.0));
 #ifdef BLOOM
@@ -93,10 +87,16 @@ void main() {
     uvec4 span = pixel_span();
     Surface surface;
     if (span.y != 0u) {
-        color = sample_planar(uintBitsToFloat(span.xyz), span.w != 0u, surface);
+        color = sample_planar(uintBitsToFloat(span.xyz), surface);
     } else {
         color = searched(span.x, surface);
     }
+#ifdef OPEN_HOLES
+    // A tile with a law tells whether its surface may end at the tiles above and below.
+    if ((span.y == 0u || span.w != 0u) && ends_in_row(surface)) {
+        discard;
+    }
+#endif
 #ifdef MOTION
     // Silhouettes are not blended: a mean of two motions is nobody's. A hole has the vector of the background that fills it.
     vec4 vector = color_sample(vec2(column_at(surface.source), row_at(0.0)));

@@ -165,7 +165,7 @@ pub fn gather_row(p: &[f64], beside: &[Vec<f64>], width: usize) -> Vec<Entry> {
                 if b > target {
                     if b - a < MAX_STRETCH {
                         hit = Some((x - 1) as f64 + (target - a) / (b - a));
-                        outermost = ends(p, x - 1, false) || ends(p, x, true) || ends_in_row(x - 1);
+                        outermost = ends(p, x - 1, false) || ends(p, x, true);
                         continue;
                     }
                     if b - target < 1.0 {
@@ -174,7 +174,7 @@ pub fn gather_row(p: &[f64], beside: &[Vec<f64>], width: usize) -> Vec<Entry> {
                     let displacement = a - (x - 1) as f64;
                     if target - a < 0.5 {
                         hit = Some((x - 1) as f64);
-                        outermost = ends(p, x - 1, false) || ends_in_row(x - 1);
+                        outermost = ends(p, x - 1, false);
                     } else if edge.is_none_or(|(d, _)| displacement < d) {
                         edge = Some((displacement, x - 1));
                     }
@@ -185,7 +185,7 @@ pub fn gather_row(p: &[f64], beside: &[Vec<f64>], width: usize) -> Vec<Entry> {
             let last = p.len() - 1;
             let away = |x: usize| (p[x] - target).abs();
             match (hit, edge) {
-                (Some(column), _) => Entry::new(column, None, rim, outermost),
+                (Some(column), _) => Entry::new(column, None, rim, outermost || ends_in_row(column as usize)),
                 (None, Some((_, x))) => Entry::new(x as f64, Some(away(x)), rim, false),
                 (None, None) => {
                     Entry::new(last as f64, Some(away(last)).filter(|away| *away >= 0.5), rim, false)

@@ -369,11 +369,11 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     var farther: bool;
     var local_7: f32;
     var local_8: f32;
+    var phi_595_: bool;
     var phi_596_: bool;
     var phi_597_: bool;
-    var phi_598_: bool;
-    var phi_645_: bool;
-    var phi_678_: bool;
+    var phi_644_: bool;
+    var phi_677_: bool;
 
     let _e19 = (*at_1).b;
     jump = (_e19 > 0f);
@@ -382,25 +382,25 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     torn = ((_e22 - _e24) >= 2f);
     let _e28 = (*beside).rim;
     let _e29 = (_e28 < 0f);
-    phi_598_ = _e29;
+    phi_597_ = _e29;
     if _e29 {
         let _e30 = jump;
         let _e31 = !(_e30);
-        phi_597_ = _e31;
+        phi_596_ = _e31;
         if !(_e31) {
             let _e33 = torn;
-            phi_596_ = _e33;
+            phi_595_ = _e33;
             if _e33 {
                 let _e35 = (*at_1).b;
-                phi_596_ = (_e35 < 1f);
+                phi_595_ = (_e35 < 1f);
             }
-            let _e38 = phi_596_;
-            phi_597_ = _e38;
+            let _e38 = phi_595_;
+            phi_596_ = _e38;
         }
-        let _e40 = phi_597_;
-        phi_598_ = _e40;
+        let _e40 = phi_596_;
+        phi_597_ = _e40;
     }
-    let _e42 = phi_598_;
+    let _e42 = phi_597_;
     rim = _e42;
     let _e43 = rim;
     if _e43 {
@@ -432,14 +432,14 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e64 = local_5;
     (*beside).rim_depth = _e64;
     let _e66 = jump;
-    phi_645_ = _e66;
+    phi_644_ = _e66;
     if _e66 {
         let _e69 = synthesis.law[1u];
         let _e72 = (*at_1).depths[0u];
         let _e74 = (*beside).edge_depth;
-        phi_645_ = ((_e69 * (_e72 - _e74)) < 0f);
+        phi_644_ = ((_e69 * (_e72 - _e74)) < 0f);
     }
-    let _e79 = phi_645_;
+    let _e79 = phi_644_;
     farther = _e79;
     let _e80 = farther;
     if _e80 {
@@ -462,36 +462,36 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e93 = local_8;
     (*beside).edge_depth = _e93;
     let _e95 = jump;
-    phi_678_ = _e95;
+    phi_677_ = _e95;
     if _e95 {
         let _e97 = (*at_1).a;
         let _e99 = torn;
-        phi_678_ = ((_e97 > -0.5f) || !(_e99));
+        phi_677_ = ((_e97 > -0.5f) || !(_e99));
     }
-    let _e103 = phi_678_;
+    let _e103 = phi_677_;
     return _e103;
 }
 
 fn is_event(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
+    var phi_508_: bool;
     var phi_509_: bool;
-    var phi_510_: bool;
 
     let _e4 = (*a);
     let _e5 = (_e4 <= 0f);
-    phi_510_ = _e5;
+    phi_509_ = _e5;
     if _e5 {
         let _e6 = (*b);
         let _e7 = (_e6 > 0f);
-        phi_509_ = _e7;
+        phi_508_ = _e7;
         if !(_e7) {
             let _e9 = (*b);
             let _e11 = (*a);
-            phi_509_ = (max(_e9, -1f) < _e11);
+            phi_508_ = (max(_e9, -1f) < _e11);
         }
-        let _e14 = phi_509_;
-        phi_510_ = _e14;
+        let _e14 = phi_508_;
+        phi_509_ = _e14;
     }
-    let _e16 = phi_510_;
+    let _e16 = phi_509_;
     return _e16;
 }
 
@@ -549,15 +549,15 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     var param_44: f32;
     var param_45: f32;
     var param_46: vec2<f32>;
-    var phi_731_: bool;
-    var phi_741_: bool;
-    var phi_811_: bool;
-    var phi_821_: bool;
-    var phi_831_: bool;
-    var phi_904_: bool;
-    var phi_954_: bool;
-    var phi_977_: bool;
-    var phi_1028_: bool;
+    var phi_730_: bool;
+    var phi_740_: bool;
+    var phi_810_: bool;
+    var phi_820_: bool;
+    var phi_830_: bool;
+    var phi_903_: bool;
+    var phi_953_: bool;
+    var phi_976_: bool;
+    var phi_1027_: bool;
 
     let _e75 = (*at_2).a;
     let _e77 = (*at_2).x;
@@ -586,23 +586,23 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     found = false;
     let _e108 = (*at_2).x;
     let _e109 = (_e108 >= 0f);
-    phi_731_ = _e109;
+    phi_730_ = _e109;
     if _e109 {
         let _e111 = (*at_2).x;
         let _e112 = (*end);
-        phi_731_ = (_e111 < _e112);
+        phi_730_ = (_e111 < _e112);
     }
-    let _e115 = phi_731_;
-    phi_741_ = _e115;
+    let _e115 = phi_730_;
+    phi_740_ = _e115;
     if _e115 {
         let _e117 = (*at_2).a;
         param_22 = _e117;
         let _e119 = (*at_2).b;
         param_23 = _e119;
         let _e120 = is_event((&param_22), (&param_23));
-        phi_741_ = _e120;
+        phi_740_ = _e120;
     }
-    let _e122 = phi_741_;
+    let _e122 = phi_740_;
     if _e122 {
         let _e123 = beside_1;
         param_24 = _e123;
@@ -648,34 +648,34 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
             (*at_2) = _e163;
             let _e164 = a_1;
             let _e165 = (_e164 <= 0f);
-            phi_811_ = _e165;
+            phi_810_ = _e165;
             if _e165 {
                 let _e167 = (*at_2).a;
-                phi_811_ = (_e167 > 0f);
+                phi_810_ = (_e167 > 0f);
             }
-            let _e170 = phi_811_;
+            let _e170 = phi_810_;
             crosses = _e170;
             let _e171 = crosses;
             found = _e171;
             let _e172 = crosses;
             let _e173 = !(_e172);
-            phi_821_ = _e173;
+            phi_820_ = _e173;
             if _e173 {
                 let _e175 = (*at_2).x;
                 let _e176 = (*end);
-                phi_821_ = (_e175 < _e176);
+                phi_820_ = (_e175 < _e176);
             }
-            let _e179 = phi_821_;
-            phi_831_ = _e179;
+            let _e179 = phi_820_;
+            phi_830_ = _e179;
             if _e179 {
                 let _e181 = (*at_2).a;
                 param_32 = _e181;
                 let _e183 = (*at_2).b;
                 param_33 = _e183;
                 let _e184 = is_event((&param_32), (&param_33));
-                phi_831_ = _e184;
+                phi_830_ = _e184;
             }
-            let _e186 = phi_831_;
+            let _e186 = phi_830_;
             if _e186 {
                 let _e187 = beside_1;
                 param_34 = _e187;
@@ -735,12 +735,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
             (*at_2) = _e228;
             let _e230 = (*at_2).a;
             let _e231 = (_e230 > 0f);
-            phi_904_ = _e231;
+            phi_903_ = _e231;
             if !(_e231) {
                 let _e234 = (*at_2).b;
-                phi_904_ = (_e234 <= 0f);
+                phi_903_ = (_e234 <= 0f);
             }
-            let _e237 = phi_904_;
+            let _e237 = phi_903_;
             crosses = _e237;
             let _e239 = (*at_2).a;
             behind = (_e239 > 0f);
@@ -790,12 +790,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
         }
     }
     let _e262 = found;
-    phi_954_ = _e262;
+    phi_953_ = _e262;
     if !(_e262) {
         let _e265 = beside_1.edge;
-        phi_954_ = (_e265 < 0f);
+        phi_953_ = (_e265 < 0f);
     }
-    let _e268 = phi_954_;
+    let _e268 = phi_953_;
     own = _e268;
     let _e269 = own;
     if _e269 {
@@ -809,13 +809,13 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     let _e276 = local_16;
     x_4 = _e276;
     let _e277 = found;
-    phi_977_ = _e277;
+    phi_976_ = _e277;
     if _e277 {
         let _e279 = (*at_2).b;
         let _e281 = (*at_2).a;
-        phi_977_ = ((_e279 - _e281) < 2f);
+        phi_976_ = ((_e279 - _e281) < 2f);
     }
-    let _e285 = phi_977_;
+    let _e285 = phi_976_;
     if _e285 {
         let _e287 = (*at_2).a;
         let _e290 = (*at_2).b;
@@ -848,12 +848,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     away_2 = ((_e313 - _e314) + (_e318 * _e320));
     let _e323 = found;
     let _e324 = !(_e323);
-    phi_1028_ = _e324;
+    phi_1027_ = _e324;
     if _e324 {
         let _e325 = away_2;
-        phi_1028_ = (abs(_e325) >= 0.5f);
+        phi_1027_ = (abs(_e325) >= 0.5f);
     }
-    let _e329 = phi_1028_;
+    let _e329 = phi_1027_;
     (*surface).hole = _e329;
     let _e332 = (*surface).source;
     param_38 = _e332;
@@ -952,10 +952,10 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     var param_58: f32;
     var param_59: i32;
     var param_60: Surface;
-    var phi_1192_: bool;
-    var phi_1201_: bool;
-    var phi_1284_: bool;
-    var phi_1297_: bool;
+    var phi_1191_: bool;
+    var phi_1200_: bool;
+    var phi_1283_: bool;
+    var phi_1296_: bool;
 
     let _e39 = synthesis.origins[0u];
     let _e41 = gl_FragCoord_1[0u];
@@ -982,19 +982,19 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
         let _e75 = at_3.x;
         let _e76 = limit;
         let _e77 = (_e75 < _e76);
-        phi_1192_ = _e77;
+        phi_1191_ = _e77;
         if _e77 {
             let _e79 = at_3.b;
-            phi_1192_ = (_e79 <= 0f);
+            phi_1191_ = (_e79 <= 0f);
         }
-        let _e82 = phi_1192_;
-        phi_1201_ = _e82;
+        let _e82 = phi_1191_;
+        phi_1200_ = _e82;
         if _e82 {
             let _e84 = at_3.b;
             let _e87 = at_3.a;
-            phi_1201_ = (max(_e84, -1f) >= _e87);
+            phi_1200_ = (max(_e84, -1f) >= _e87);
         }
-        let _e90 = phi_1201_;
+        let _e90 = phi_1200_;
         if _e90 {
             let _e92 = at_3.x;
             param_50 = (_e92 + 2f);
@@ -1047,22 +1047,22 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     middle = (0.5f * f32((_e154 - 1i)));
     let _e159 = at_3.a;
     let _e160 = (_e159 <= 0f);
-    phi_1284_ = _e160;
+    phi_1283_ = _e160;
     if _e160 {
         let _e162 = at_3.b;
-        phi_1284_ = (_e162 > 0f);
+        phi_1283_ = (_e162 > 0f);
     }
-    let _e165 = phi_1284_;
+    let _e165 = phi_1283_;
     let _e166 = stretch;
     let _e168 = (_e165 && (_e166 < 2f));
-    phi_1297_ = _e168;
+    phi_1296_ = _e168;
     if _e168 {
         let _e170 = (*surface_1).source;
         let _e171 = middle;
         let _e174 = middle;
-        phi_1297_ = (abs((_e170 - _e171)) <= _e174);
+        phi_1296_ = (abs((_e170 - _e171)) <= _e174);
     }
-    let _e177 = phi_1297_;
+    let _e177 = phi_1296_;
     done = _e177;
     let _e178 = done;
     if !(_e178) {
@@ -1083,7 +1083,7 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     return _e186;
 }
 
-fn sample_planar(affine: ptr<function, vec3<f32>>, may_end: ptr<function, bool>, surface_2: ptr<function, Surface>) -> vec4<f32> {
+fn sample_planar(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
     var place_4: f32;
     var at_4: vec2<f32>;
     var param_61: f32;
@@ -1124,30 +1124,27 @@ fn main_1() {
     var span_2: vec4<u32>;
     var surface_3: Surface;
     var param_63: vec3<f32>;
-    var param_64: bool;
-    var param_65: Surface;
-    var param_66: u32;
-    var param_67: Surface;
+    var param_64: Surface;
+    var param_65: u32;
+    var param_66: Surface;
 
-    let _e11 = pixel_span();
-    span_2 = _e11;
-    let _e13 = span_2[1u];
-    if (_e13 != 0u) {
-        let _e15 = span_2;
-        let _e19 = span_2[3u];
-        param_63 = bitcast<vec3<f32>>(_e15.xyz);
-        param_64 = (_e19 != 0u);
-        let _e21 = sample_planar((&param_63), (&param_64), (&param_65));
-        let _e22 = param_65;
-        surface_3 = _e22;
-        color_2 = _e21;
+    let _e9 = pixel_span();
+    span_2 = _e9;
+    let _e11 = span_2[1u];
+    if (_e11 != 0u) {
+        let _e13 = span_2;
+        param_63 = bitcast<vec3<f32>>(_e13.xyz);
+        let _e16 = sample_planar((&param_63), (&param_64));
+        let _e17 = param_64;
+        surface_3 = _e17;
+        color_2 = _e16;
     } else {
-        let _e24 = span_2[0u];
-        param_66 = _e24;
-        let _e25 = searched((&param_66), (&param_67));
-        let _e26 = param_67;
-        surface_3 = _e26;
-        color_2 = _e25;
+        let _e19 = span_2[0u];
+        param_65 = _e19;
+        let _e20 = searched((&param_65), (&param_66));
+        let _e21 = param_66;
+        surface_3 = _e21;
+        color_2 = _e20;
     }
     return;
 }
