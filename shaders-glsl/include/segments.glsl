@@ -77,9 +77,9 @@ float segment_end(float x, int tile_row, bool below, uint shift) {
 // something of what lies beside it in the source, and not of what lies there for this eye.
 bool ends_in_row(Surface surface) {
     float column = column_at(floor(surface.source));
-    float above = law.y * (surface.depth - depth_sample(vec2(column, row_at(1.0))));
-    float below = law.y * (surface.depth - depth_sample(vec2(column, row_at(-1.0))));
-    return max(above, below) > ROW_GAP;
+    float above = law.y * depth_sample(vec2(column, row_at(1.0)));
+    float below = law.y * depth_sample(vec2(column, row_at(-1.0)));
+    return law.y * surface.depth - min(above, below) > ROW_GAP;
 }
 
 // True if the surface that a pixel shows ends at column x, or at the next one if the pixel shows that, too: the

@@ -92,8 +92,7 @@ void main() {
         color = searched(span.x, surface);
     }
 #ifdef OPEN_HOLES
-    // A tile with a law tells whether its surface may end at the tiles above and below.
-    if ((span.y == 0u || span.w != 0u) && ends_in_row(surface)) {
+    if (span.w != 0u && ends_in_row(surface)) {
         discard;
     }
 #endif

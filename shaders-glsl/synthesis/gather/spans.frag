@@ -8,8 +8,8 @@ TEXTURE(2) uniform highp usampler2D tile_map;
 
 #include "include/laws.glsl"
 
-// A span with 0 in its second component, or a law, whose second component is never 0. The last component of a law
-// is 1 if the surface may end at the tiles above or below.
+// A span with 0 in its second component, or a law, whose second component is never 0. The last component is 0 if a law's
+// surface does not end at the tiles above and below.
 layout(location = 0) out uvec4 span;
 
 void main() {
@@ -34,16 +34,17 @@ void main() {
     ivec2 beside = clamp(tile.y + ivec2(-1, 1), 0, (source_size.y - 1) / TILE.y);
     for (int s = from; s <= to; ++s) {
         uint moved = texelFetch(tile_map, ivec2(s, tile.y), 0).r;
-        int lowest = max(int(moved & 0xffffu), least);
+        int own = int(moved & 0xffffu);
+        int lowest = max(own, least);
         int highest = min(int(moved >> 16), most);
         if (lowest <= highest) {
             low = min(low, lowest);
             high = max(high, highest);
             left = min(left, s);
             right = s;
-            uint below = texelFetch(tile_map, ivec2(s, beside.x), 0).r;
-            uint above = texelFetch(tile_map, ivec2(s, beside.y), 0).r;
-            drop = max(drop, int(moved & 0xffffu) - int(min(below & 0xffffu, above & 0xffffu)));
+            uint below = texelFetch(tile_map, ivec2(s, beside.x), 0).r & 0xffffu;
+            uint above = texelFetch(tile_map, ivec2(s, beside.y), 0).r & 0xffffu;
+            drop = max(drop, own - int(min(below, above)));
         }
         least -= PITCH;
         most -= PITCH;
@@ -54,7 +55,7 @@ void main() {
     }
     // From the first candidate to the last one, each rounded outwards, and one more to close the last pair.
     uint search = pack_span(float(high) / TILE_UNITS, ceil(float(high - low) / TILE_UNITS) + 2.0);
-    span = uvec4(search, 0u, 0u, 0u);
+    span = uvec4(search, 0u, 0u, 1u);
     vec3 affine = tile_plane(tile, left, right);
     if (affine.y != 0.0) {
         // On the law's plane, they reach farther by no more than the rise from tile to tile.

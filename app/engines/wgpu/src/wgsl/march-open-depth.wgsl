@@ -150,24 +150,24 @@ fn ends_in_row(surface: ptr<function, Surface>) -> bool {
     let _e17 = column_at((&param_3));
     column = _e17;
     let _e20 = synthesis.law[1u];
-    let _e22 = (*surface).depth;
-    let _e23 = column;
+    let _e21 = column;
     param_4 = 1f;
-    let _e24 = row_at((&param_4));
-    param_5 = vec2<f32>(_e23, _e24);
-    let _e26 = depth_sample((&param_5));
-    above = (_e20 * (_e22 - _e26));
-    let _e31 = synthesis.law[1u];
-    let _e33 = (*surface).depth;
-    let _e34 = column;
+    let _e22 = row_at((&param_4));
+    param_5 = vec2<f32>(_e21, _e22);
+    let _e24 = depth_sample((&param_5));
+    above = (_e20 * _e24);
+    let _e28 = synthesis.law[1u];
+    let _e29 = column;
     param_6 = -1f;
-    let _e35 = row_at((&param_6));
-    param_7 = vec2<f32>(_e34, _e35);
-    let _e37 = depth_sample((&param_7));
-    below = (_e31 * (_e33 - _e37));
+    let _e30 = row_at((&param_6));
+    param_7 = vec2<f32>(_e29, _e30);
+    let _e32 = depth_sample((&param_7));
+    below = (_e28 * _e32);
+    let _e36 = synthesis.law[1u];
+    let _e38 = (*surface).depth;
     let _e40 = above;
     let _e41 = below;
-    return (max(_e40, _e41) > 4f);
+    return (((_e36 * _e38) - min(_e40, _e41)) > 4f);
 }
 
 fn is_outermost(x_1: ptr<function, f32>, depths: ptr<function, vec2<f32>>, shows_next: ptr<function, bool>) -> bool {
@@ -1298,8 +1298,7 @@ fn main_1() {
     var param_83: u32;
     var param_84: Surface;
     var param_85: Surface;
-    var phi_1545_: bool;
-    var phi_1551_: bool;
+    var phi_1544_: bool;
 
     let _e12 = pixel_span();
     span_2 = _e12;
@@ -1319,27 +1318,21 @@ fn main_1() {
         surface_4 = _e24;
         color_2 = _e23;
     }
-    let _e26 = span_2[1u];
-    let _e27 = (_e26 == 0u);
-    phi_1545_ = _e27;
-    if !(_e27) {
-        let _e30 = span_2[3u];
-        phi_1545_ = (_e30 != 0u);
+    let _e26 = span_2[3u];
+    let _e27 = (_e26 != 0u);
+    phi_1544_ = _e27;
+    if _e27 {
+        let _e28 = surface_4;
+        param_85 = _e28;
+        let _e29 = ends_in_row((&param_85));
+        phi_1544_ = _e29;
     }
-    let _e33 = phi_1545_;
-    phi_1551_ = _e33;
-    if _e33 {
-        let _e34 = surface_4;
-        param_85 = _e34;
-        let _e35 = ends_in_row((&param_85));
-        phi_1551_ = _e35;
-    }
-    let _e37 = phi_1551_;
-    if _e37 {
+    let _e31 = phi_1544_;
+    if _e31 {
         discard;
     }
-    let _e39 = surface_4.depth;
-    gl_FragDepth = _e39;
+    let _e33 = surface_4.depth;
+    gl_FragDepth = _e33;
     return;
 }
 
