@@ -26,7 +26,7 @@ fn level_size(size: [u32; 2], level: usize) -> [u32; 2] {
 }
 
 impl BloomTargets {
-    /// Makes targets of one pixel; call [`BloomTargets::resize`] before drawing into them.
+    /// Makes targets of one pixel; call [`BloomTargets::fit`] before drawing into them.
     pub fn new(gl: &Rc<Context>) -> Result<BloomTargets, GlError> {
         let format = hdr_format(gl);
         let level = || RenderTarget::new(gl, [1, 1], &[(format, Filter::Linear)], None);
