@@ -3,6 +3,8 @@
 
 // A surface that is stretched more than this counts as two surfaces with a disocclusion between them.
 const float MAX_STRETCH = 2.0;
+// A surface ends in a row if the row above or below shows something farther by more pixels of displacement than this.
+const float ROW_GAP = 4.0;
 
 // Any view calls these rules; gather writes them out in `is_event` and `meet` (include/segments.glsl).
 
@@ -30,5 +32,3 @@ bool folds(float a, float b) {
 bool has_rim(float a, float b) {
     return folds(a, b) || (jumps(a, b) && is_torn(a, b) && b < 1.0);
 }
-// Where the row above or below is farther than a surface by more pixels of displacement than this, the surface ends.
-const float ROW_GAP = 4.0;

@@ -29,7 +29,7 @@ void main() {
     // The first and the last tile that may land here.
     int left = tiles;
     int right = 0;
-    // How much farther than these tiles those above and below reach.
+    // By how much the tiles above and below reach farther than these, in units of displacement.
     int drop = 0;
     ivec2 beside = clamp(tile.y + ivec2(-1, 1), 0, (source_size.y - 1) / TILE.y);
     for (int s = from; s <= to; ++s) {

@@ -57,11 +57,11 @@ impl March {
 }
 
 /// The parts of the march that are counted.
-const PARTS: [&str; 9] =
-    ["law", "short way", "short step", "long way", "segment", "event", "crossing", "fill", OPEN_LAW];
-/// The part of a law whose surface may end at the tile, if holes are left open.
-const OPEN_LAW: &str = "open law";
-/// How often each of them runs: for one pixel, or the maximum over a wave's pixels.
+const COUNTED: [&str; 9] =
+    ["law", "short way", "short step", "long way", "segment", "event", "crossing", "fill", LAW_TEST];
+/// The test of a march with open holes whether a law's surface ends in the row; it runs where that may be.
+const LAW_TEST: &str = "test of a law";
+/// How often each of [`COUNTED`] runs: for one pixel, or the maximum over a wave's pixels.
 type Trips = [f64; 9];
 
 /// Returns the trips of a pixel. Either its tile has a law, or it goes the short way.
@@ -128,8 +128,8 @@ impl Costs {
             ("march: law", law.straight),
             ("march: depth of a law", depth.straight.minus(law.straight)),
             ("march: bloom", more("BLOOM", "PARTS=1")?),
-            ("march: open law", more("OPEN_HOLES", "PARTS=1")?),
-            ("march: open short way", more("OPEN_HOLES", "PARTS=2")?),
+            ("march: test of a law", more("OPEN_HOLES", "PARTS=1")?),
+            ("march: tests of a search", more("OPEN_HOLES", "PARTS=2")?),
             ("march: short way", short.straight),
             ("march: short step", short.loops[0]),
             ("march: long way", long),
@@ -155,10 +155,10 @@ impl Costs {
             (march.depth, "depth of a law", law),
             // Both ways end with it.
             (march.bloom, "bloom", law + short),
-            (march.open, "open short way", short),
+            (march.open, "tests of a search", short),
         ];
         let more = more.into_iter().filter(|(is_on, ..)| *is_on).map(|(_, part, times)| (part, times));
-        let counted = PARTS.into_iter().zip(trips).filter(|(part, _)| march.open || *part != OPEN_LAW);
+        let counted = COUNTED.into_iter().zip(trips).filter(|(part, _)| march.open || *part != LAW_TEST);
         let runs = counted.chain(more);
         runs.fold(Work::default(), |sum, (part, times)| sum.plus(times, self.part(&format!("march: {part}"))))
     }
@@ -284,6 +284,11 @@ mod tests {
     use crate::gpus::GPUS;
     use yoro::eyes::{EyeOptions, GuardBand, Pose};
 
+    /// Returns trips of these parts alone.
+    fn named(parts: &[(&str, f64)]) -> Trips {
+        COUNTED.map(|part| parts.iter().filter(|(name, _)| *name == part).map(|(_, times)| times).sum())
+    }
+
     #[test]
     fn all_devices_have_all_parts() {
         // Bifrost's slots are tuples of two instructions.
@@ -320,8 +325,10 @@ mod tests {
         set(4, 0, [32 | 64, 0, 0, 0]);
         let pair = EyeOptions { size: [6, 3], ..EyeOptions::default() }.pair(Pose::IDENTITY);
         let counts = Counted { pixels, views: pair.synthesis_views(GuardBand::None).unwrap() };
-        let long = [1.0, 1.0, 3.0, 1.0, 9.0, 2.0, 7.0, 1.0, 0.0];
-        let short = [1.0, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        let ways = [("law", 1.0), ("short way", 1.0)];
+        let more = [("long way", 1.0), ("segment", 9.0), ("event", 2.0), ("crossing", 7.0), ("fill", 1.0)];
+        let long = named(&[&ways[..], &[("short step", 3.0)], &more].concat());
+        let short = named(&[&ways[..], &[("short step", 2.0), (LAW_TEST, 1.0)]].concat());
         assert_eq!(counts.waves([4, 4]), [long, short]);
         assert_eq!(counts.waves([1, 1]).len(), 18);
     }
@@ -333,8 +340,8 @@ mod tests {
             ("march: law", body(30.0, 2.0)),
             ("march: depth of a law", body(5.0, 2.0)),
             ("march: bloom", body(50.0, 1.0)),
-            ("march: open law", body(15.0, 3.0)),
-            ("march: open short way", body(25.0, 4.0)),
+            ("march: test of a law", body(15.0, 3.0)),
+            ("march: tests of a search", body(25.0, 4.0)),
             ("march: short way", body(80.0, 3.0)),
             ("march: short step", body(20.0, 1.0)),
             ("march: long way", body(90.0, 2.0)),
@@ -344,14 +351,16 @@ mod tests {
             ("march: fill", body(75.0, 8.0)),
         ];
         let costs = Costs { lanes: 128, parts };
-        let lawful = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        let lawful = named(&[("law", 1.0), (LAW_TEST, 1.0)]);
         let all = March { bloom: true, depth: true, open: true };
         assert_eq!(costs.march(lawful, March::default()), body(30.0, 2.0));
         assert_eq!(costs.march(lawful, all), body(30.0 + 5.0 + 50.0 + 15.0, 2.0 + 2.0 + 1.0 + 3.0));
-        let short = [0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let searched = [("short way", 1.0), ("short step", 2.0)];
+        let short = named(&searched);
         assert_eq!(costs.march(short, March::default()), body(80.0 + 40.0, 3.0 + 2.0));
         assert_eq!(costs.march(short, all), body(120.0 + 50.0 + 25.0, 5.0 + 1.0 + 4.0));
-        let long = [0.0, 1.0, 2.0, 1.0, 3.0, 2.0, 1.0, 1.0, 0.0];
+        let more = [("long way", 1.0), ("segment", 3.0), ("event", 2.0), ("crossing", 1.0), ("fill", 1.0)];
+        let long = named(&[&searched[..], &more].concat());
         let slots = 80.0 + 40.0 + 90.0 + 180.0 + 80.0 + 70.0 + 75.0;
         assert_eq!(costs.march(long, March::default()), body(slots, 3.0 + 2.0 + 2.0 + 6.0 + 1.0 + 8.0));
     }

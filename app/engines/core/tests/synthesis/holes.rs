@@ -40,6 +40,7 @@ impl Rig {
         let bytes: Vec<u8> = depth.iter().flat_map(|z| z.to_ne_bytes()).collect();
         let textures =
             [texture(Format::Rgba8, Filter::Linear, &rgba), texture(Format::R32F, Filter::Nearest, &bytes)];
+        assert_eq!(rgba.len(), depth.len() * 4);
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         let size = [0, 1].map(|i| ORIGIN[i] + warp.target_size[i] + 3);
         let target = RenderTarget::new(gl, size, &formats, Some(Format::Depth32FStencil8)).unwrap();

@@ -120,7 +120,7 @@ fn ends(p: &[f64], x: usize, after: bool) -> bool {
     }
 }
 
-/// Where a row beside is farther by more pixels of displacement than this, a surface ends.
+/// A surface ends in a row if a row beside shows something farther by more pixels of displacement than this.
 const ROW_GAP: f64 = 4.0;
 
 /// Returns which pixels of the target a pipeline with open holes leaves open.

@@ -46,8 +46,8 @@ impl StereoMethod for Hybrid {
         let Some([targets, far]) = &mut self.targets else { return Ok(false) };
         let renderer = frame.renderer;
         let fields = Fields::new(&frame.pair, self.threshold, &frame.scene)?;
-        if fields.split.far.is_some() {
-            renderer.draw_plain(far, &frame.scene, &fields.view, fields.split.far)?;
+        if let Some(slice) = fields.split.far {
+            renderer.draw_plain(far, &frame.scene, &fields.view, Some(slice))?;
         }
         for eye in Eye::BOTH {
             let (view, to) = (frame.pair.view(eye), frame.to(eye));

@@ -161,7 +161,7 @@ impl StereoMethod for Synthesized {
         let known = if renders_holes { Known::Border(&views.warp) } else { Known::Nothing };
         let seen = Rectangle { origin: views.dominant_crop, size: pair.size };
         let is_shown =
-            renderer.draw_source(targets, &frame.scene, &views.source, seen, known, shown.as_ref())?;
+            renderer.draw_source(targets, &frame.scene, &views.source, Some(seen), known, shown.as_ref())?;
         let is_composited = composites_first && renderer.has_composite();
         if is_composited {
             let to = Destination::whole(targets.complete_picture(views.source.size)?);

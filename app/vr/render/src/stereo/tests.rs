@@ -347,7 +347,7 @@ fn passes_declare_what_they_read_and_write() {
     // Under glass, too, each eye is stored once, and its depth not at all.
     for settings in [local(), smooth(), RenderSettings { bloom: true, ..smooth() }] {
         let Noted { declared, .. } = note(&settings, scene());
-        // What only the guard band shows does not shine.
+        // Bloom is not computed of the guard band.
         let shining =
             declared.iter().filter(|pass| pass.name == "bloom").map(|pass| pass.reads[0].image.size);
         assert_eq!(shining.collect::<Vec<_>>(), vec![SIZE; settings.bloom.into()]);

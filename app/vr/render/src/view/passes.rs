@@ -584,8 +584,8 @@ impl Renderer {
         targets.declare(light.declare(self.gl.pass("surfaces"))).run(|| {
             let to = targets.destination(view.size);
             self.load(far, far_view, crop, targets, &to);
-            if slice.is_some() {
-                self.draw_opaque(Renderer::variant(targets), &light, views, slice, |_| {});
+            if let Some(slice) = slice {
+                self.draw_opaque(Renderer::variant(targets), &light, views, Some(slice), |_| {});
             }
         });
         self.draw_transparent(targets, scene, views);

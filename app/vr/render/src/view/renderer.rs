@@ -189,8 +189,7 @@ impl Renderer {
         view: &View,
     ) -> Result<RenderedView<'a>, GlError> {
         let targets = self.fitting(targets, scene)?;
-        let whole = Rectangle { origin: [0, 0], size: view.size };
-        self.draw_source(targets, &scene.into(), view, whole, Known::Nothing, None)?;
+        self.draw_source(targets, &scene.into(), view, None, Known::Nothing, None)?;
         self.complete(targets, view)
     }
 
@@ -403,18 +402,18 @@ impl Renderer {
 /// What methods use to draw.
 impl Renderer {
     /// Renders the opaque part of a view for synthesis: its average colour without bloom, its nearest depth, and the
-    /// bloom of the part that an eye sees. Returns true if the picture is in `to`, which may be given if nothing
+    /// bloom of the part that an eye sees (all of it if `None`). Returns true if the picture is in `to`, which may be given if nothing
     /// [follows](Renderer::is_complete) the surfaces.
     pub(crate) fn draw_source(
         &self,
         targets: &mut Targets,
         scene: &LitScene,
         view: &View,
-        seen: Rectangle,
+        seen: Option<Rectangle>,
         known: Known,
         to: Option<&EyeTarget>,
     ) -> Result<bool, GlError> {
-        let needs = Needs { bloom: Some(seen), ..self.needs(true) };
+        let needs = Needs { bloom: seen, ..self.needs(true) };
         let direct = targets.fit(view, scene.detail(view), needs, to)?;
         self.draw_on_sky(targets, scene, &[*view], None, known);
         self.resolve(targets, view, true, self.ink, to.filter(|_| direct).map(|to| &to.color))?;

@@ -24,7 +24,7 @@ pub struct Needs {
     pub depth: bool,
     /// True if samples are read after drawing, for outlines.
     pub samples: bool,
-    /// The part that shines; the whole view if `None`.
+    /// The part that bloom is computed of; the whole view if `None`.
     pub bloom: Option<Rectangle>,
 }
 
