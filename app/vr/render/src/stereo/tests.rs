@@ -322,9 +322,8 @@ fn passes_declare_what_they_read_and_write() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let pair = pair(Eye::Right, DepthConvention::Reversed);
-    let note = |settings: &RenderSettings, scene| {
-        let (mut rig, mut method) =
-            (Rig::of(gl, settings, scene), session(gl, Method::Synthesized, settings));
+    let note = |method, settings: &RenderSettings, scene| {
+        let (mut rig, mut method) = (Rig::of(gl, settings, scene), session(gl, method, settings));
         rig.render(&mut method, &pair);
         let noted = Rc::<RefCell<Noted>>::default();
         gl.set_observer(Some(Box::new(Noting(noted.clone()))));
@@ -334,7 +333,7 @@ fn passes_declare_what_they_read_and_write() {
     };
     let mut opaque = scene();
     opaque.model.parts.pop();
-    let Noted { declared, open, drawn } = &note(&local(), opaque);
+    let Noted { declared, open, drawn } = &note(Method::Synthesized, &local(), opaque);
     assert!(open.is_empty() && drawn.iter().all(|(pass, _)| !pass.is_empty()), "{drawn:?}");
     let find = |name: &str| declared.iter().find(|pass| pass.name == name).unwrap();
     let wide = find("surfaces").writes[0].image;
@@ -346,7 +345,7 @@ fn passes_declare_what_they_read_and_write() {
     assert!(drawn.contains(&("gather march", SIZE)), "{drawn:?}");
     // Under glass, too, each eye is stored once, and its depth not at all.
     for settings in [local(), smooth(), RenderSettings { bloom: true, ..smooth() }] {
-        let Noted { declared, .. } = note(&settings, scene());
+        let Noted { declared, .. } = note(Method::Synthesized, &settings, scene());
         // Bloom is not computed of the guard band.
         let shining =
             declared.iter().filter(|pass| pass.name == "bloom").map(|pass| pass.reads[0].image.size);
@@ -357,6 +356,15 @@ fn passes_declare_what_they_read_and_write() {
         let stored: Vec<Image> = stored.collect();
         assert!(stored.len() == 2 && stored.iter().all(|image| image.format == Format::Rgba8), "{stored:?}");
     }
+    // Two renders with outlines store the samples that these are found in, and no depth beside the picture.
+    let mut outlined = scene();
+    outlined.style = ShadingStyle::Anime;
+    let Noted { declared, .. } = note(Method::Conventional, &smooth(), outlined);
+    let writes = declared.iter().flat_map(|pass| &pass.writes).filter(|write| write.is_stored);
+    let (samples, pictures): (Vec<_>, Vec<_>) =
+        writes.map(|write| write.image).partition(|image| image.samples > 1);
+    assert!(samples.iter().any(|image| image.format == Format::Depth32F), "{samples:?}");
+    assert!(pictures.iter().all(|image| image.format == Format::Rgba8), "{pictures:?}");
 }
 
 /// Settings with several samples in each pixel.

@@ -318,7 +318,13 @@ impl Renderer {
         let Some(samples) = targets.multisample() else { return };
         if self.reads(targets) && (depth || ink) {
             let place = targets.resolved_place();
-            return self.read_samples(targets, view, ink, targets.resolved.images(), &place);
+            let [color, nearest] = [targets.resolved.color(0), targets.resolved.depth()].map(Texture::image);
+            let written = [color].into_iter().chain(depth.then_some(nearest));
+            self.read_samples(targets, view, ink, written, &place);
+            if !depth {
+                targets.discard_depth();
+            }
+            return;
         }
         if targets.carries
             && let Some(carry) = &self.carry
