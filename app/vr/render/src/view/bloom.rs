@@ -76,17 +76,15 @@ pub fn first_renderable<const N: usize>(gl: &Rc<Context>, formats: [Format; N]) 
     formats.into_iter().find(renders).unwrap_or(formats[N - 1])
 }
 
-/// The part of a picture that shines.
+/// The picture of a view, a [part](BloomTargets::part) of which shines.
 #[derive(Clone, Copy)]
 pub struct Shining<'a> {
     /// Display-referred colour, filtered linearly: a texture, or an array of them.
     pub picture: &'a Texture,
     /// The layer, if the picture is an array.
     pub layer: Option<u32>,
-    /// Lower left corner of the part in the picture, in pixels.
-    pub origin: [u32; 2],
-    /// Width and height of the part.
-    pub size: [u32; 2],
+    /// Lower left corner of the view in the picture, in pixels.
+    pub corner: [u32; 2],
 }
 
 /// Spreads light that is brighter than white over its surroundings.
@@ -120,7 +118,7 @@ impl BloomPass {
     }
 
     fn declare(&self, targets: &BloomTargets, shining: &Shining) -> Pass<'_> {
-        let picture = Image { size: shining.size, ..shining.picture.image() };
+        let picture = Image { size: targets.part.size, ..shining.picture.image() };
         let mut pass = self.gl.pass("bloom").read("source", picture).write(targets.levels[0].images());
         for pair in targets.levels.windows(2) {
             // Down to the smaller level, and up again.
@@ -145,7 +143,7 @@ impl BloomPass {
                 let program = if i == 0 { first } else { &self.down };
                 program.bind().texture_of("source", 0, from).set("texel", texel(level.color(0)));
                 if i == 0 {
-                    set_part(program, shining, exposure);
+                    set_part(program, shining, targets.part, exposure);
                 }
                 self.gl.draw_screen();
                 from = level.color(0);
@@ -166,8 +164,9 @@ impl BloomPass {
 }
 
 /// Sets the uniforms of the first step.
-fn set_part(program: &Program, shining: &Shining, exposure: f32) {
-    let Shining { picture, layer, origin, size } = *shining;
+fn set_part(program: &Program, shining: &Shining, part: Rectangle, exposure: f32) {
+    let Shining { picture, layer, corner } = *shining;
+    let (origin, size) = ([0, 1].map(|i| corner[i] + part.origin[i]), part.size);
     let texel = 1.0 / Vec2::from(picture.size().map(|n| n as f32));
     let place = |v: [u32; 2]| Vec2::from(v.map(|n| n as f32)) * texel;
     let (corner, extent) = (place(origin), place(size));

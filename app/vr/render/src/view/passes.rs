@@ -451,13 +451,10 @@ impl Renderer {
     /// Computes the bloom of an eye's image in the targets, as far as it [shines](Targets::fit).
     pub(crate) fn render_bloom(&self, targets: &Targets, view: &View, eye: Eye) {
         if let Some((pass, bloom)) = self.bloom.as_ref().zip(targets.bloom.as_ref()) {
-            let corner = targets.layout.origin(view.size, eye);
-            let Rectangle { origin, size } = bloom.part();
             let shining = Shining {
                 picture: targets.color().color(0),
                 layer: targets.color_layer(eye),
-                origin: [0, 1].map(|i| corner[i] + origin[i]),
-                size,
+                corner: targets.layout.origin(view.size, eye),
             };
             pass.run(bloom, &shining, self.settings.exposure);
         }
