@@ -21,6 +21,9 @@ uniform ivec2 view_origin;  // lower left corner of the view in the maps, and it
 uniform ivec2 view_size;
 
 layout(location = 0) out vec4 out_color;
+#ifdef WRITE_DEPTH
+layout(location = 1) out vec4 out_depth;  // for targets that hold depth in a colour
+#endif
 
 #if SAMPLES > 1
 int at_sample = 0;
@@ -59,5 +62,6 @@ void main() {
 #endif
 #ifdef WRITE_DEPTH
     gl_FragDepth = nearer * nearest;
+    out_depth = vec4(nearer * nearest);
 #endif
 }

@@ -23,6 +23,8 @@ pub enum Format {
     Rgba16F,
     /// Packed float RGB without sign or alpha.
     R11G11B10F,
+    /// Half float, one channel.
+    R16F,
     /// Half float, two channels.
     Rg16F,
     /// Float, one channel.
@@ -56,6 +58,7 @@ impl Format {
             Format::Rgb10A2 => (glow::RGB10_A2, glow::RGBA, glow::UNSIGNED_INT_2_10_10_10_REV),
             Format::Rgba16F => (glow::RGBA16F, glow::RGBA, glow::HALF_FLOAT),
             Format::R11G11B10F => (glow::R11F_G11F_B10F, glow::RGB, glow::UNSIGNED_INT_10F_11F_11F_REV),
+            Format::R16F => (glow::R16F, glow::RED, glow::HALF_FLOAT),
             Format::Rg16F => (glow::RG16F, glow::RG, glow::HALF_FLOAT),
             Format::R32F => (glow::R32F, glow::RED, glow::FLOAT),
             Format::Rg32F => (glow::RG32F, glow::RG, glow::FLOAT),
@@ -75,7 +78,7 @@ impl Format {
     pub fn bytes(self) -> usize {
         match self {
             Format::R8 => 1,
-            Format::Rg8 | Format::Depth16 => 2,
+            Format::Rg8 | Format::R16F | Format::Depth16 => 2,
             Format::Rgba8 | Format::Srgb8Alpha8 | Format::Rgb10A2 | Format::R11G11B10F | Format::Rg16F => 4,
             Format::R32F | Format::R32Ui | Format::Depth24 | Format::Depth32F => 4,
             Format::Rgba16F | Format::Rg32F | Format::Depth32FStencil8 => 8,

@@ -23,6 +23,7 @@ use crate::gpus::GPUS;
 use crate::lamps::Lamps;
 use crate::model::{Frame, FrameModel, MULTIVIEW, SIZE};
 use crate::tables::Estimate;
+use crate::traffic::name_depth;
 use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, EyePair, FoveationLevel, Gaze};
 use yoro_assets::ShadingStyle;
 use yoro_context::{Backend, Headless};
@@ -186,7 +187,9 @@ impl Estimator {
         session.prepare(&mut self.scene, views.inset.is_some())?;
         self.recorder.start();
         session.frame(&mut self.scene, &views, FrameTargets::Images(&mut images), None)?;
-        Ok(self.recorder.take())
+        let mut passes = self.recorder.take();
+        name_depth(&mut passes);
+        Ok(passes)
     }
 
     /// Counts the synthesis of each layer, with its share of the eye's pixels.

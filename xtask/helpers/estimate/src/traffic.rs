@@ -83,6 +83,20 @@ impl Assumed {
     }
 }
 
+/// Names the format of depth that the synthesis reads as it was written: a library does not know its host's.
+pub fn name_depth(passes: &mut [RecordedPass]) {
+    let written = passes.iter().flat_map(|pass| &pass.declaration.writes).map(|write| write.image);
+    let halves: Vec<Image> = written.filter(|image| image.format == Format::R16F).collect();
+    for read in passes.iter_mut().flat_map(|pass| &mut pass.declaration.reads) {
+        let has_size = |half: &&Image| read.uniform == "depth_map" && half.size == read.image.size;
+        if read.image.samples == 1
+            && let Some(half) = halves.iter().find(has_size)
+        {
+            read.image = *half;
+        }
+    }
+}
+
 /// False if the program is that of a material without this map.
 fn has_map(draw: &RecordedDraw, uniform: &str) -> bool {
     let maps = ["diffuse_map", "specular_map", "emissive_map", "normal_map"];
@@ -180,6 +194,16 @@ pub mod tests {
         let carried = pass("march", "a.frag", Shape::Screen, &[("depth_map", image(Format::Rg16F, 1))]);
         let simulated = Assumed { depth_in_16_bits: true, ..Assumed::default() };
         assert_eq!(Assumed::default().bytes(&carried) - simulated.bytes(&carried), 2.0 * PIXELS);
+        // Depth that was written in half floats is read so.
+        let [mut resolve, march] = ["resolve", "march"]
+            .map(|name| pass(name, "a.frag", Shape::Screen, &[("depth_map", image(Format::Depth32F, 1))]));
+        resolve.declaration.reads.clear();
+        resolve.declaration.writes[0].image.format = Format::R16F;
+        let mut passes = [resolve, march];
+        let bytes = |passes: &[RecordedPass]| Assumed::default().bytes(&passes[1]);
+        let before = bytes(&passes);
+        name_depth(&mut passes);
+        assert_eq!(before - bytes(&passes), 2.0 * PIXELS);
     }
 
     #[test]

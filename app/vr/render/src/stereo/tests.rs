@@ -356,15 +356,17 @@ fn passes_declare_what_they_read_and_write() {
         let stored: Vec<Image> = stored.collect();
         assert!(stored.len() == 2 && stored.iter().all(|image| image.format == Format::Rgba8), "{stored:?}");
     }
-    // Two renders with outlines store the samples that these are found in, and no depth beside the picture.
-    let mut outlined = scene();
-    outlined.style = ShadingStyle::Anime;
-    let Noted { declared, .. } = note(Method::Conventional, &smooth(), outlined);
-    let writes = declared.iter().flat_map(|pass| &pass.writes).filter(|write| write.is_stored);
-    let (samples, pictures): (Vec<_>, Vec<_>) =
-        writes.map(|write| write.image).partition(|image| image.samples > 1);
-    assert!(samples.iter().any(|image| image.format == Format::Depth32F), "{samples:?}");
-    assert!(pictures.iter().all(|image| image.format == Format::Rgba8), "{pictures:?}");
+    // Outlines are found in stored samples. Beside the picture, two renders then store no depth, and a source half floats.
+    for (method, depths) in [(Method::Conventional, 0), (Method::Synthesized, 1)] {
+        let outlined = Scene { style: ShadingStyle::Anime, ..scene() };
+        let Noted { declared, .. } = note(method, &smooth(), outlined);
+        let writes = declared.iter().flat_map(|pass| &pass.writes).filter(|write| write.is_stored);
+        let (samples, resolved): (Vec<_>, Vec<_>) =
+            writes.map(|write| write.image).partition(|image| image.samples > 1);
+        assert!(samples.iter().any(|image| image.format.is_depth()), "{samples:?}");
+        assert!(resolved.iter().all(|image| !image.format.is_depth()), "{resolved:?}");
+        assert_eq!(resolved.iter().filter(|image| image.format == Format::R16F).count(), depths);
+    }
 }
 
 /// Settings with several samples in each pixel.

@@ -318,10 +318,10 @@ impl Renderer {
         let Some(samples) = targets.multisample() else { return };
         if self.reads(targets) && (depth || ink) {
             let place = targets.resolved_place();
-            let [color, nearest] = [targets.resolved.color(0), targets.resolved.depth()].map(Texture::image);
+            let [color, nearest] = [targets.resolved.color(0), targets.nearest()].map(Texture::image);
             let written = [color].into_iter().chain(depth.then_some(nearest));
             self.read_samples(targets, view, ink, written, &place);
-            if !depth {
+            if !depth || !nearest.format.is_depth() {
                 targets.discard_depth();
             }
             return;
@@ -333,7 +333,7 @@ impl Renderer {
         }
         let whole = Destination::whole(&targets.resolved);
         let to = to.unwrap_or(&whole);
-        let pair = targets.pair.as_ref().filter(|_| targets.carries);
+        let pair = targets.halves.as_ref().filter(|_| targets.carries);
         let nearest = match pair {
             Some(pair) => Some(pair.color(0)),
             None => (depth || ink).then(|| targets.resolved.depth()),
@@ -369,7 +369,7 @@ impl Renderer {
             pass = pass.read(name, image);
         }
         pass.write(written).run(|| {
-            self.gl.overwrite(to, 1, true);
+            self.gl.overwrite(to, 2, true);
             self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
             program.bind().texture_multisample("color_map", 0, color).texture_multisample(
                 "depth_map",

@@ -446,6 +446,8 @@ impl Renderer {
     /// Returns what a view needs whose depth is read or not.
     pub(super) fn needs(&self, depth: bool) -> Needs {
         let samples = self.depth_resolve == DepthResolve::Samples && (depth || self.ink);
-        Needs { depth, samples, bloom: None }
+        // Outlines are found in the samples; what is left to do allows half floats, as where depth is carried.
+        let half_depth = samples && depth && self.ink && self.gl.capabilities().float_render_targets;
+        Needs { depth, samples, half_depth, bloom: None }
     }
 }

@@ -24,6 +24,8 @@ pub struct Needs {
     pub depth: bool,
     /// True if samples are read after drawing, for outlines.
     pub samples: bool,
+    /// True if half floats are enough for the nearest depth, if it is reversed.
+    pub half_depth: bool,
     /// The part that bloom is computed of; the whole view if `None`.
     pub bloom: Option<Rectangle>,
 }
@@ -41,7 +43,7 @@ pub enum Onto {
 
 /// The images of one view, or of both eyes at once.
 ///
-/// A pixel costs 4 bytes of resolved colour and as many of depth, 8 to 12 for each sample that is not kept in tiles, and
+/// A pixel costs 4 bytes of resolved colour and 2 or 4 of depth, 8 to 12 for each sample that is not kept in tiles, and
 /// 4 of a complete picture where somebody reads it as a texture.
 pub struct Targets {
     gl: Rc<Context>,
@@ -67,8 +69,10 @@ pub struct Targets {
     needs: Needs,
     /// Average colour and, depending on the depth_resolve, nearest depth.
     pub resolved: RenderTarget,
-    /// The depth of two samples, made when first needed.
-    pub pair: Option<RenderTarget>,
+    /// Depth in half floats, of two samples or the nearest, made when first needed.
+    pub halves: Option<RenderTarget>,
+    /// True if the current view's depth is in `halves`.
+    has_halves: bool,
     /// The picture with outlines, where they are drawn beside the resolved one.
     pub inked: Option<RenderTarget>,
     pub bloom: Option<BloomTargets>,
@@ -111,7 +115,8 @@ impl Targets {
             carries: false,
             needs: Needs::default(),
             resolved: resolved?,
-            pair: None,
+            halves: None,
+            has_halves: false,
             inked: None,
             bloom: settings.bloom.then(|| BloomTargets::new(gl)).transpose()?,
             composited: None,
@@ -138,16 +143,15 @@ impl Targets {
         let shining = needs.bloom.unwrap_or(Rectangle { origin: [0, 0], size });
         self.bloom.as_mut().map_or(Ok(()), |bloom| bloom.fit(shining))?;
         self.has_depth = false;
-        self.carries = self.samples > 1
-            && needs.depth
-            && self.depth_resolve == DepthResolve::InColor
-            && view.depth.convention == DepthConvention::Reversed;
-        if self.carries {
-            if self.pair.is_none() {
-                let formats = [(Format::Rg16F, Filter::Nearest)];
-                self.pair = Some(RenderTarget::new(&self.gl, whole, &formats, None)?);
+        let is_reversed = self.samples > 1 && view.depth.convention == DepthConvention::Reversed;
+        self.carries = is_reversed && needs.depth && self.depth_resolve == DepthResolve::InColor;
+        self.has_halves = self.carries || is_reversed && needs.half_depth;
+        if self.has_halves {
+            if self.halves.is_none() {
+                let format = if self.carries { Format::Rg16F } else { Format::R16F };
+                self.halves = Some(RenderTarget::new(&self.gl, whole, &[(format, Filter::Nearest)], None)?);
             }
-            self.pair.as_mut().map_or(Ok(()), |pair| pair.resize(whole))?;
+            self.halves.as_mut().map_or(Ok(()), |halves| halves.resize(whole))?;
         }
         // OpenGL ES averages between equal rectangles only.
         let to = to.filter(|to| self.layout == Layout::Single && to.color.origin == [0, 0]);
@@ -181,25 +185,26 @@ impl Targets {
             }
         }
         // A pass that reads them writes the picture and its depth.
-        Ok(self.needs.samples && self.fit_one(texture))
+        if self.needs.samples && self.fit_one(texture) {
+            return Ok(true);
+        }
+        let own = (self.resolved.color(0).raw(), self.resolved.color(0).image());
+        self.has_halves = self.has_halves && (self.carries || self.fit_one(Some(own)));
+        Ok(false)
     }
 
     /// Attaches a texture beside the depth of one sample; false if there is none, or the driver refuses.
     fn fit_one(&mut self, texture: Option<(glow::Texture, Image)>) -> bool {
-        // SAFETY: the caller's texture, by the contract of `EyeTarget`.
-        texture.is_some_and(|color| unsafe { self.one.fit(&[color], self.resolved.depth()) }.is_ok())
+        let halves = self.halves.as_ref().filter(|_| self.has_halves);
+        texture.is_some_and(|color| attach(&mut self.one, color, halves, self.resolved.depth()))
     }
 
     /// Attaches what is drawn to the tiles; false if the driver has no such tiles. Colour goes to a texture if there is one.
     fn fit_tile(&mut self, texture: Option<(glow::Texture, Image)>) -> bool {
         let Some(tile) = &mut self.tile else { return false };
         let color = texture.unwrap_or((self.resolved.color(0).raw(), self.resolved.color(0).image()));
-        let pair = self.pair.as_ref().filter(|_| self.carries);
-        let pair = pair.map(|pair| (pair.color(0).raw(), pair.color(0).image()));
-        let colors = [color, pair.unwrap_or(color)];
-        let colors = &colors[..1 + usize::from(pair.is_some())];
-        // SAFETY: textures of this context: our own, and the caller's by the contract of `EyeTarget`.
-        let fits = unsafe { tile.fit(colors, self.resolved.depth()) }.is_ok();
+        let halves = self.halves.as_ref().filter(|_| self.has_halves);
+        let fits = attach(tile, color, halves, self.resolved.depth());
         if !fits {
             // The driver refuses these formats: it need not be asked again.
             self.tile = None;
@@ -241,7 +246,7 @@ impl Targets {
     /// as they are needed afterwards.
     pub fn declare<'a>(&self, pass: Pass<'a>) -> Pass<'a> {
         let [color, depth] = [self.resolved.color(0), self.resolved.depth()].map(Texture::image);
-        let pair = self.pair.as_ref().filter(|_| self.carries).map(|pair| pair.color(0).image());
+        let pair = self.halves.as_ref().filter(|_| self.carries).map(|pair| pair.color(0).image());
         match (self.onto, &self.multisample) {
             (Onto::Samples, Some((samples, _))) if self.needs.samples => pass.write(samples.images()),
             (Onto::Samples, Some((samples, _))) => pass.in_tile(samples.images()),
@@ -279,7 +284,8 @@ impl Targets {
     /// Returns the place of the resolved picture and its depth, for a pass that reads the samples.
     pub fn resolved_place(&self) -> Destination {
         let whole = Destination::whole(&self.resolved);
-        if self.elsewhere.is_some() { self.one.part(whole.size) } else { whole }
+        let is_one = self.elsewhere.is_some() || self.has_halves;
+        if is_one { self.one.part(whole.size) } else { whole }
     }
 
     /// Discards the depth of the bound framebuffer.
@@ -306,17 +312,19 @@ impl Targets {
     pub fn depth(&self, size: [u32; 2], eye: Eye, offset: [u32; 2]) -> DepthImage<'_> {
         assert!(self.has_depth, "this view was rendered without its depth");
         let corner = self.layout.origin(size, eye);
-        let is_pair = self.carries;
         DepthImage {
-            texture: match &self.pair {
-                Some(pair) if is_pair => pair.color(0),
-                _ => self.resolved.depth(),
-            },
+            texture: self.nearest(),
             origin: [0, 1].map(|i| corner[i] + offset[i]),
             layer: self.layer(eye),
-            is_pair,
+            is_pair: self.carries,
             convention: self.convention,
         }
+    }
+
+    /// Returns the texture of the nearest depth, or of the depth of two samples.
+    pub fn nearest(&self) -> &Texture {
+        let halves = self.halves.as_ref().filter(|_| self.has_halves);
+        halves.map_or(self.resolved.depth(), |halves| halves.color(0))
     }
 
     /// Returns the layer of an eye's colour, if the image is an array.
@@ -328,6 +336,19 @@ impl Targets {
     pub fn layer(&self, eye: Eye) -> Option<u32> {
         (self.layout == Layout::Layered).then_some(eye.index() as u32)
     }
+}
+
+/// Attaches a picture, depth in half floats if there is any, and depth; false if the driver refuses.
+fn attach(
+    to: &mut TileTarget,
+    color: (glow::Texture, Image),
+    halves: Option<&RenderTarget>,
+    depth: &Texture,
+) -> bool {
+    let halves = halves.map(|halves| (halves.color(0).raw(), halves.color(0).image()));
+    let colors = [color, halves.unwrap_or(color)];
+    // SAFETY: textures of this context: our own, and the caller's by the contract of `EyeTarget`.
+    unsafe { to.fit(&colors[..1 + usize::from(halves.is_some())], depth) }.is_ok()
 }
 
 /// Returns a picture of this size, made on the first call.
