@@ -30,7 +30,7 @@ pub(crate) enum Task {
         /// --shaders: renew xtask/helpers/estimate/shader-cost.csv
         #[arg(long, requires = "shaders")]
         bless: bool,
-        /// Scenes, --width, --height, --viewpoints, --fov-y-degrees: see `cargo xtask maintain estimate -- --help`
+        /// Scenes, --viewpoints, --fov-y-degrees: see `cargo xtask maintain estimate -- --help`
         #[arg(last = true, conflicts_with = "shaders")]
         frames: Vec<String>,
     },

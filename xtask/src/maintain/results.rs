@@ -33,8 +33,7 @@ const RUNS: [Run; 11] = [
 ];
 /// The name of the estimate of phones, whose report is kept as text.
 const ESTIMATE: &str = "estimate";
-const ESTIMATE_ARGUMENTS: [&str; 6] = ["--width", "512", "--height", "512", "--viewpoints", "1"];
-const ESTIMATE_MINUTES: u32 = 8;
+const ESTIMATE_MINUTES: u32 = 40;
 
 impl Run {
     fn suite(&self) -> &'static str {
@@ -81,8 +80,7 @@ pub fn measure(suites: &[String]) -> anyhow::Result<String> {
         let file = folder.join("out").join(format!("bench-{}.jsonl", run.suite()));
         files.push((file, documents.join(format!("{}.jsonl", run.suite()))));
     }
-    let estimate =
-        is_wanted(ESTIMATE).then(|| estimate::frames(&ESTIMATE_ARGUMENTS.map(str::to_owned))).transpose()?;
+    let estimate = is_wanted(ESTIMATE).then(|| estimate::frames(&[])).transpose()?;
     // Everything is measured: only now are the previous data replaced.
     for (from, to) in &files {
         copy(from, to)?;

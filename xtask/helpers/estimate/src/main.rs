@@ -39,12 +39,6 @@ use yoro_viewer::render_settings;
 struct Args {
     /// Built-in scenes [default: all]
     scenes: Vec<String>,
-    /// Width of each eye's image in pixels
-    #[arg(long, default_value_t = SIZE[0])]
-    width: u32,
-    /// Height of each eye's image in pixels
-    #[arg(long, default_value_t = SIZE[1])]
-    height: u32,
     /// Vertical field of view in degrees
     #[arg(long, default_value_t = 60.0)]
     fov_y_degrees: f32,
@@ -107,8 +101,7 @@ fn main() -> anyhow::Result<()> {
         }
     }
     ensure!(!estimates.is_empty(), "no built-in scene is called so");
-    let size = [args.width, args.height];
-    print!("{}", tables::report(estimates, size).to_markdown());
+    print!("{}", tables::report(estimates).to_markdown());
     Ok(())
 }
 
@@ -135,11 +128,7 @@ impl Estimator {
     }
 
     fn estimates(&mut self, args: &Args, label: &'static str) -> anyhow::Result<Vec<Estimate>> {
-        let eyes = EyeOptions {
-            size: [args.width, args.height],
-            fov_y: args.fov_y_degrees.to_radians(),
-            ..EyeOptions::default()
-        };
+        let eyes = EyeOptions { size: SIZE, fov_y: args.fov_y_degrees.to_radians(), ..EyeOptions::default() };
         let viewpoints = self.scene.scene.viewpoints.clone();
         let wanted = args.viewpoints.clamp(1, viewpoints.len());
         let mut estimates: Vec<Estimate> = Vec::new();

@@ -30,15 +30,13 @@ struct Entry<'a> {
     method: &'a str,
     /// True if vertices are shaded once for both eyes.
     once: bool,
-    /// How many times more pixels an eye of [`SIZE`] has. The number of vertices does not depend on it.
-    larger: f64,
 }
 
 impl<'a> Entry<'a> {
-    fn all(estimates: &'a [Estimate], size: [u32; 2]) -> Vec<Entry<'a>> {
+    fn all(estimates: &'a [Estimate]) -> Vec<Entry<'a>> {
         let mut entries = Vec::new();
         for (label, method) in unique(estimates.iter().map(|estimate| (estimate.label, estimate.method))) {
-            let entry = Entry { estimates, label, method, once: false, larger: pixels(SIZE) / pixels(size) };
+            let entry = Entry { estimates, label, method, once: false };
             if method == MULTIVIEW {
                 entries.push(Entry { once: true, ..entry });
             }
@@ -78,9 +76,7 @@ impl<'a> Entry<'a> {
     fn sums(&self, prefix: &str, counts: impl Fn(&str) -> bool) -> Vec<f64> {
         let of_frame = |frame: &Frame| -> f64 {
             let counted = frame.iter().filter(|(name, _)| name.strip_prefix(prefix).is_some_and(&counts));
-            counted
-                .map(|(name, value)| if name.contains(VERTICES) { value / self.larger } else { *value })
-                .sum()
+            counted.map(|(_, value)| value).sum()
         };
         self.scenes().map(|estimate| average(estimate.frames.iter().map(of_frame))).collect()
     }
@@ -112,19 +108,15 @@ impl<'a> Entry<'a> {
     }
 }
 
-fn pixels(size: [u32; 2]) -> f64 {
-    f64::from(size[0]) * f64::from(size[1])
-}
-
 fn average(values: impl IntoIterator<Item = f64>) -> f64 {
     mean(values).unwrap_or(f64::NAN)
 }
 
-/// Returns the report of all estimates, of eyes of this size.
-pub fn report(mut estimates: Vec<Estimate>, size: [u32; 2]) -> Report {
+/// Returns the report of all estimates.
+pub fn report(mut estimates: Vec<Estimate>) -> Report {
     // By label, so that scenes of one label follow each other in every table.
     estimates.sort_by_key(|estimate| estimate.label);
-    let entries = Entry::all(&estimates, size);
+    let entries = Entry::all(&estimates);
     let mut section = Section::new(
         "Whole frames on mobile GPUs",
         "An estimate: nothing here was timed on a GPU. Frames are rendered here; the samples that pass each depth test are \
@@ -308,8 +300,7 @@ fn passes(entries: &[Entry]) -> Table {
         }
     }
     let [width, height] = SIZE;
-    table.note =
-        format!("Vertices do not depend on the size: the figures are for eyes of {width} x {height} pixels.");
+    table.note = format!("Eyes have {width} x {height} pixels.");
     table
 }
 

@@ -317,10 +317,9 @@ impl Renderer {
     ) {
         let Some(samples) = targets.multisample() else { return };
         if self.reads(targets) && (depth || ink) {
-            let place = targets.resolved_place();
             let [color, nearest] = [targets.resolved.color(0), targets.nearest()].map(Texture::image);
             let written = [color].into_iter().chain(depth.then_some(nearest));
-            self.read_samples(targets, view, ink, written, &place);
+            self.read_samples(targets, view, ink, written, &targets.resolved_place());
             if !depth || !nearest.format.is_depth() {
                 targets.discard_depth();
             }
@@ -334,10 +333,7 @@ impl Renderer {
         let whole = Destination::whole(&targets.resolved);
         let to = to.unwrap_or(&whole);
         let pair = targets.halves.as_ref().filter(|_| targets.carries);
-        let nearest = match pair {
-            Some(pair) => Some(pair.color(0)),
-            None => (depth || ink).then(|| targets.resolved.depth()),
-        };
+        let nearest = (depth || ink || pair.is_some()).then(|| targets.nearest());
         let pass = self.gl.pass("resolve").in_tile(samples.images());
         pass.write([to.image(Format::Rgba8)]).write(nearest.map(Texture::image)).run(|| {
             samples.average(0, to);
