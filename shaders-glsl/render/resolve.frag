@@ -22,7 +22,7 @@ uniform ivec2 view_size;
 
 layout(location = 0) out vec4 out_color;
 #ifdef WRITE_DEPTH
-layout(location = 1) out vec4 out_depth;  // for targets that hold depth in a colour
+layout(location = 1) out vec4 out_depth;  // for targets with depth in a colour attachment
 #endif
 
 #if SAMPLES > 1

@@ -376,7 +376,7 @@ impl TileTarget {
         let depth = Texture::new(gl, SIZE, Format::Depth32F, Filter::Nearest)?;
         let mut tile = TileTarget::new(gl, samples)?;
         // SAFETY: the colour is a 2-D texture of this context.
-        if unsafe { tile.fit(&[(color.color(0).raw(), color.color(0).image())], &depth) }.is_err() {
+        if unsafe { tile.fit(&[color.color(0).attachment()], &depth) }.is_err() {
             return Ok(false);
         }
         let to = tile.part(SIZE);

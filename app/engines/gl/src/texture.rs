@@ -265,6 +265,11 @@ impl Texture {
         Image { format: self.format, size: self.size, samples: 1 }
     }
 
+    /// Returns the GL name and the description, as [`TileTarget::fit`](crate::TileTarget::fit) takes them.
+    pub fn attachment(&self) -> (glow::Texture, Image) {
+        (self.raw, self.image())
+    }
+
     /// Returns the GL name.
     pub fn raw(&self) -> glow::Texture {
         self.raw

@@ -23,7 +23,7 @@ use crate::gpus::GPUS;
 use crate::lamps::Lamps;
 use crate::model::{Frame, FrameModel, MULTIVIEW, SIZE};
 use crate::tables::Estimate;
-use crate::traffic::name_depth;
+use crate::traffic::correct_depth_formats;
 use yoro::eyes::{DepthConvention, DepthRange, EyeOptions, EyePair, FoveationLevel, Gaze};
 use yoro_assets::ShadingStyle;
 use yoro_context::{Backend, Headless};
@@ -177,7 +177,7 @@ impl Estimator {
         self.recorder.start();
         session.frame(&mut self.scene, &views, FrameTargets::Images(&mut images), None)?;
         let mut passes = self.recorder.take();
-        name_depth(&mut passes);
+        correct_depth_formats(&mut passes);
         Ok(passes)
     }
 

@@ -83,8 +83,9 @@ impl Assumed {
     }
 }
 
-/// Names the format of depth that the synthesis reads as it was written: a library does not know its host's.
-pub fn name_depth(passes: &mut [RecordedPass]) {
+/// Gives the depth that the synthesis reads the format in which it was written. The library, which is not told the format,
+/// declares 32 bits.
+pub fn correct_depth_formats(passes: &mut [RecordedPass]) {
     let written = passes.iter().flat_map(|pass| &pass.declaration.writes).map(|write| write.image);
     let halves: Vec<Image> = written.filter(|image| image.format == Format::R16F).collect();
     for read in passes.iter_mut().flat_map(|pass| &mut pass.declaration.reads) {
@@ -202,7 +203,7 @@ pub mod tests {
         let mut passes = [resolve, march];
         let bytes = |passes: &[RecordedPass]| Assumed::default().bytes(&passes[1]);
         let before = bytes(&passes);
-        name_depth(&mut passes);
+        correct_depth_formats(&mut passes);
         assert_eq!(before - bytes(&passes), 2.0 * PIXELS);
     }
 

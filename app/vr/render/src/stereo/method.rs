@@ -135,12 +135,7 @@ impl EyeTarget<'_> {
     /// Returns the colour of a render target, without depth.
     pub fn of(target: &RenderTarget) -> EyeTarget<'static> {
         let color = target.color(0);
-        EyeTarget {
-            color: target.color_only(),
-            texture: Some((color.raw(), color.image())),
-            depth: None,
-            motion: None,
-        }
+        EyeTarget { color: target.color_only(), texture: Some(color.attachment()), depth: None, motion: None }
     }
 
     /// True if a view of this size can be rendered into the texture, and read there as it is stored.

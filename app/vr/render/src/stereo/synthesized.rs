@@ -168,7 +168,7 @@ impl StereoMethod for Synthesized {
             renderer.composite(targets, &views.source, Eye::Left, [0, 0], &to, None);
         }
         let composited = targets.composited.as_ref().filter(|_| is_composited);
-        let own = |picture: &RenderTarget| (picture.color(0).raw(), picture.color(0).image());
+        let own = |picture: &RenderTarget| picture.color(0).attachment();
         let (picture, image) = composited.map_or_else(|| targets.picture(), own);
         let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
         let stored = image.format == Format::Srgb8Alpha8;

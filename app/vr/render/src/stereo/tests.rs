@@ -356,7 +356,7 @@ fn passes_declare_what_they_read_and_write() {
         let stored: Vec<Image> = stored.collect();
         assert!(stored.len() == 2 && stored.iter().all(|image| image.format == Format::Rgba8), "{stored:?}");
     }
-    // Outlines are found in stored samples. Beside the picture, two renders then store no depth, and a source half floats.
+    // Outlines are found in stored samples. Two renders then store the picture alone, a source its depth in half floats, too.
     for (method, depths) in [(Method::Conventional, 0), (Method::Synthesized, 1)] {
         let outlined = Scene { style: ShadingStyle::Anime, ..scene() };
         let Noted { declared, .. } = note(method, &smooth(), outlined);

@@ -166,15 +166,15 @@ impl BloomPass {
 /// Sets the uniforms of the first step.
 fn set_part(program: &Program, shining: &Shining, part: Rectangle, exposure: f32) {
     let Shining { picture, layer, corner } = *shining;
-    let (origin, size) = ([0, 1].map(|i| corner[i] + part.origin[i]), part.size);
+    let origin = [0, 1].map(|i| corner[i] + part.origin[i]);
     let texel = 1.0 / Vec2::from(picture.size().map(|n| n as f32));
     let place = |v: [u32; 2]| Vec2::from(v.map(|n| n as f32)) * texel;
-    let (corner, extent) = (place(origin), place(size));
-    let low = corner + 0.5 * texel;
-    let high = place([origin[0] + size[0], origin[1] + size[1]]) - 0.5 * texel;
+    let (start, extent) = (place(origin), place(part.size));
+    let low = start + 0.5 * texel;
+    let high = place([origin[0] + part.size[0], origin[1] + part.size[1]]) - 0.5 * texel;
     program
         .set("exposure", exposure)
         .set("color_layer", layer.unwrap_or(0) as i32)
-        .set("part", Vec4::new(corner.x, corner.y, extent.x, extent.y))
+        .set("part", Vec4::new(start.x, start.y, extent.x, extent.y))
         .set("bounds", Vec4::new(low.x, low.y, high.x, high.y));
 }

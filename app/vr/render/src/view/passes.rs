@@ -320,6 +320,7 @@ impl Renderer {
             let [color, nearest] = [targets.resolved.color(0), targets.nearest()].map(Texture::image);
             let written = [color].into_iter().chain(depth.then_some(nearest));
             self.read_samples(targets, view, ink, written, &targets.resolved_place());
+            // The depth buffer is not what is wanted, or not wanted at all.
             if !depth || !nearest.format.is_depth() {
                 targets.discard_depth();
             }

@@ -402,8 +402,8 @@ impl Renderer {
 /// What methods use to draw.
 impl Renderer {
     /// Renders the opaque part of a view for synthesis: its average colour without bloom, its nearest depth, and the
-    /// bloom of the part that an eye sees (all of it if `None`). Returns true if the picture is in `to`, which may be given if nothing
-    /// [follows](Renderer::is_complete) the surfaces.
+    /// bloom of the part that an eye sees (all of it if `None`). Returns true if the picture is in `to`, which may be given
+    /// if nothing [follows](Renderer::is_complete) the surfaces.
     pub(crate) fn draw_source(
         &self,
         targets: &mut Targets,
@@ -446,7 +446,7 @@ impl Renderer {
     /// Returns what a view needs whose depth is read or not.
     pub(super) fn needs(&self, depth: bool) -> Needs {
         let samples = self.depth_resolve == DepthResolve::Samples && (depth || self.ink);
-        // Outlines are found in the samples; what is left to do allows half floats, as where depth is carried.
+        // Outlines are found in the depth of the samples. Synthesis needs no more than half floats, as where depth is carried.
         let half_depth = samples && depth && self.ink && self.gl.capabilities().float_render_targets;
         Needs { depth, samples, half_depth, bloom: None }
     }

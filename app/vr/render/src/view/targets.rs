@@ -24,7 +24,7 @@ pub struct Needs {
     pub depth: bool,
     /// True if samples are read after drawing, for outlines.
     pub samples: bool,
-    /// True if half floats are enough for the nearest depth, if it is reversed.
+    /// True if the nearest depth may be stored in half floats, as it is where depth is reversed.
     pub half_depth: bool,
     /// The part that bloom is computed of; the whole view if `None`.
     pub bloom: Option<Rectangle>,
@@ -69,7 +69,7 @@ pub struct Targets {
     needs: Needs,
     /// Average colour and, depending on the depth_resolve, nearest depth.
     pub resolved: RenderTarget,
-    /// Depth in half floats, of two samples or the nearest, made when first needed.
+    /// Reversed depth in half floats, of two samples or the nearest of all; made when first needed.
     pub halves: Option<RenderTarget>,
     /// True if the current view's depth is in `halves`.
     has_halves: bool,
@@ -188,12 +188,13 @@ impl Targets {
         if self.needs.samples && self.fit_one(texture) {
             return Ok(true);
         }
-        let own = (self.resolved.color(0).raw(), self.resolved.color(0).image());
+        // A driver that refuses half floats beside the picture gets a depth buffer.
+        let own = self.resolved.color(0).attachment();
         self.has_halves = self.has_halves && (self.carries || self.fit_one(Some(own)));
         Ok(false)
     }
 
-    /// Attaches a texture beside the depth of one sample; false if there is none, or the driver refuses.
+    /// Attaches a texture beside depth of one sample; false if there is none, or the driver refuses.
     fn fit_one(&mut self, texture: Option<(glow::Texture, Image)>) -> bool {
         let halves = self.halves.as_ref().filter(|_| self.has_halves);
         texture.is_some_and(|color| attach(&mut self.one, color, halves, self.resolved.depth()))
@@ -202,7 +203,7 @@ impl Targets {
     /// Attaches what is drawn to the tiles; false if the driver has no such tiles. Colour goes to a texture if there is one.
     fn fit_tile(&mut self, texture: Option<(glow::Texture, Image)>) -> bool {
         let Some(tile) = &mut self.tile else { return false };
-        let color = texture.unwrap_or((self.resolved.color(0).raw(), self.resolved.color(0).image()));
+        let color = texture.unwrap_or(self.resolved.color(0).attachment());
         let halves = self.halves.as_ref().filter(|_| self.has_halves);
         let fits = attach(tile, color, halves, self.resolved.depth());
         if !fits {
@@ -295,8 +296,7 @@ impl Targets {
 
     /// Returns the texture of the resolved picture ([`Targets::color`]), which may be somebody else's.
     pub fn picture(&self) -> (glow::Texture, Image) {
-        let own = self.color().color(0);
-        self.elsewhere.unwrap_or((own.raw(), own.image()))
+        self.elsewhere.unwrap_or(self.color().color(0).attachment())
     }
 
     /// Returns the resolved picture: display-referred sRGB without bloom, filtered linearly. Alpha is luma; with several
@@ -338,14 +338,14 @@ impl Targets {
     }
 }
 
-/// Attaches a picture, depth in half floats if there is any, and depth; false if the driver refuses.
+/// Attaches a picture, depth in half floats if it is given, and a depth buffer; false if the driver refuses.
 fn attach(
     to: &mut TileTarget,
     color: (glow::Texture, Image),
     halves: Option<&RenderTarget>,
     depth: &Texture,
 ) -> bool {
-    let halves = halves.map(|halves| (halves.color(0).raw(), halves.color(0).image()));
+    let halves = halves.map(|halves| halves.color(0).attachment());
     let colors = [color, halves.unwrap_or(color)];
     // SAFETY: textures of this context: our own, and the caller's by the contract of `EyeTarget`.
     unsafe { to.fit(&colors[..1 + usize::from(halves.is_some())], depth) }.is_ok()

@@ -184,7 +184,7 @@ fn stores_as_written(gl: &Rc<Context>) -> Result<bool, GlError> {
     if gl.capabilities().tile_samples {
         let (mut tile, depth) =
             (TileTarget::new(gl, SAMPLES)?, Texture::new(gl, SIZE, Format::Depth32F, Filter::Nearest)?);
-        let color = (second.color(0).raw(), second.color(0).image());
+        let color = second.color(0).attachment();
         empty();
         // SAFETY: the colour is a 2-D texture of this context.
         if unsafe { tile.fit(&[color], &depth) }.is_ok() {
